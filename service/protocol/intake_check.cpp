@@ -79,7 +79,7 @@ dds::Credit IntakeCheck::open(const dds::SessionRequest& request, const Surround
     ++counters_.sessions_refused;
     return stranger(request.session, verdict, std::move(text));
   };
-  if (session_ != 0) {
+  if (is_held()) {
     return refused(Verdict::kRefusedStation,
                    "machine " + model_.name + " is held by station " + request_.station +
                        " with program " + request_.program +
@@ -110,7 +110,8 @@ dds::Credit IntakeCheck::open(const dds::SessionRequest& request, const Surround
   session_ = request.session;
   request_ = request;
   next_ = granted_end_ = published_end_ = 0;
-  is_complete_ = is_refused_ = is_lost_ = has_end_block_ = false;
+  is_lost_ = has_end_block_ = false;
+  change(SessionEvent::kOpened);
   check_.begin(tool_length_mm);
   newest_ = {};
   newest_.verdict = Verdict::kGood;
@@ -124,18 +125,19 @@ dds::Credit IntakeCheck::refuse_program(const dds::SessionRequest& request, std:
 }
 
 dds::Credit IntakeCheck::close(const dds::SessionRequest& request, const Surroundings& around) {
-  if (request.session != session_ || session_ == 0) {
+  if (request.session != session_ || !is_held()) {
     if (const dds::Credit* last = find_ended(request.session)) return *last;
     return stranger(request.session, Verdict::kClosed,
                     "session " + in_hex(request.session) + " is not open here");
   }
-  if (is_complete_) return credit(around);
+  if (is_complete()) return credit(around);
   if (next_ == 0) {
-    return end_session(is_refused_ ? newest_.verdict : Verdict::kClosed,
-                       is_refused_ ? newest_.text : "closed before the first block", around);
+    return end_session(is_cut_off() ? newest_.verdict : Verdict::kClosed,
+                       is_cut_off() ? newest_.text : "closed before the first block", around);
   }
-  if (is_refused_) return credit(around);
-  is_lost_ = is_refused_ = true;
+  if (is_cut_off()) return credit(around);
+  is_lost_ = true;
+  change(SessionEvent::kRefused);
   newest_.verdict = Verdict::kClosed;
   newest_.text = message_ = "station " + request_.station + " closed before the end: the machine " +
                             "runs the " + number(next_) + " blocks that it has and stops";
@@ -146,7 +148,7 @@ std::optional<dds::Credit> IntakeCheck::on_batch(const dds::Batch& batch,
                                                  const Surroundings& around, Accepted& accepted) {
   accepted.count = 0;
   const bool is_intact = batch.count <= dds::kBatchBlocks && dds::batch_crc(batch) == batch.crc;
-  if (session_ == 0 || batch.session != session_) {
+  if (!is_held() || batch.session != session_) {
     ++(is_intact ? counters_.batches_stale : counters_.batches_corrupted);
     if (!is_intact || batch.session == 0) return std::nullopt;
     if (const dds::Credit* last = find_ended(batch.session)) return *last;
@@ -154,13 +156,13 @@ std::optional<dds::Credit> IntakeCheck::on_batch(const dds::Batch& batch,
         batch.session, Verdict::kClosed,
         "session " + in_hex(batch.session) + " is not open here: its blocks were dropped");
   }
-  if (is_refused_) {
+  if (is_cut_off()) {
     ++counters_.batches_stale;
     return std::nullopt;
   }
   if (!is_intact) {
     ++counters_.batches_corrupted;
-    if (is_complete_) return std::nullopt;
+    if (is_complete()) return std::nullopt;
     newest_.verdict = Verdict::kGap;
     newest_.verdict_sequence = next_;
     newest_.text = "a batch was corrupted: send again from block " + number(next_);
@@ -182,9 +184,9 @@ std::optional<dds::Credit> IntakeCheck::on_batch(const dds::Batch& batch,
     return credit(around);
   }
   const std::uint64_t batch_end = batch.first_sequence + batch.count;
-  if (is_complete_ || batch_end < next_ || (batch_end == next_ && !batch.is_end)) {
+  if (is_complete() || batch_end < next_ || (batch_end == next_ && !batch.is_end)) {
     ++counters_.batches_duplicate;
-    return is_complete_ ? std::optional(credit(around)) : std::nullopt;
+    return is_complete() ? std::optional(credit(around)) : std::nullopt;
   }
   dds::Credit refusal;
   if (!take_blocks(batch, around, accepted, refusal)) return refusal;
@@ -196,7 +198,7 @@ std::optional<dds::Credit> IntakeCheck::on_batch(const dds::Batch& batch,
     return end_session(Verdict::kRefusedProgram, "the program has no block", around);
   }
   if (!has_end_block_) append_end(accepted);
-  is_complete_ = true;
+  change(SessionEvent::kEndMark);
   newest_.verdict = Verdict::kComplete;
   newest_.verdict_sequence = next_ - 1;
   newest_.text = message_ = "program " + request_.program + " is in: " + number(next_) + " blocks";
@@ -234,12 +236,12 @@ void IntakeCheck::append_end(Accepted& accepted) {
 
 std::optional<dds::Credit> IntakeCheck::on_planner_reject(const BlockReject& reject,
                                                           const Surroundings& around) {
-  if (session_ == 0 || newest_.verdict == Verdict::kRefusedBlock) return std::nullopt;
+  if (!is_held() || newest_.verdict == Verdict::kRefusedBlock) return std::nullopt;
   return refuse(reject, around);
 }
 
 dds::Credit IntakeCheck::on_queue_full(const Surroundings& around) {
-  is_complete_ = false;
+  change(SessionEvent::kEndIsLost);
   return refuse(dds::Verdict::kBeyondCredit,
                 "the block queue is full although credit was kept, a fault of the service: session "
                 "refused",
@@ -247,27 +249,27 @@ dds::Credit IntakeCheck::on_queue_full(const Surroundings& around) {
 }
 
 std::optional<dds::Credit> IntakeCheck::on_program_end(const Surroundings& around) {
-  if (session_ == 0) return std::nullopt;
+  if (!is_held()) return std::nullopt;
   return end_session(Verdict::kRan, "program " + request_.program + " ran to its end", around);
 }
 
 std::optional<dds::Credit> IntakeCheck::on_queues_emptied(const std::string& reason,
                                                           const Surroundings& around) {
-  if (session_ == 0) return std::nullopt;
-  if (is_refused_) return end_session(newest_.verdict, newest_.text, around);
+  if (!is_held()) return std::nullopt;
+  if (is_cut_off()) return end_session(newest_.verdict, newest_.text, around);
   return end_session(Verdict::kAborted, reason, around);
 }
 
 void IntakeCheck::on_station_lost(std::uint64_t session) {
-  if (session_ == 0 || session != session_) return;
-  if (is_complete_) return;  // it has done its work
+  if (!is_held() || session != session_) return;
+  if (is_complete()) return;  // it has done its work
   is_lost_ = true;
   message_ = "station " + request_.station + " is gone";
   if (next_ == 0) static_cast<void>(end_session(Verdict::kClosed, message_, {}));
 }
 
 std::optional<dds::Credit> IntakeCheck::due_credit(const Surroundings& around) {
-  if (session_ == 0) return std::nullopt;
+  if (!is_held()) return std::nullopt;
   const std::int64_t published_ns = published_ns_;
   const std::uint64_t published_end = published_end_;
   dds::Credit now = credit(around);
@@ -292,7 +294,7 @@ dds::Credit IntakeCheck::refuse(dds::Verdict verdict, std::string text,
                                 const Surroundings& around) {
   ++counters_.sessions_refused;
   if (next_ == 0) return end_session(verdict, std::move(text), around);
-  is_refused_ = true;
+  change(SessionEvent::kRefused);
   newest_.verdict = verdict;
   newest_.text = message_ = std::move(text);
   return credit(around);
@@ -312,10 +314,11 @@ dds::Credit IntakeCheck::end_session(dds::Verdict verdict, std::string text,
                                      const Surroundings& around) {
   newest_.verdict = verdict;
   newest_.text = message_ = std::move(text);
-  is_refused_ = true;
+  change(SessionEvent::kRefused);
   dds::Credit last = credit(around);
   ended_[ended_at_++ % ended_.size()] = last;
   session_ = 0;
+  change(SessionEvent::kOver);
   return last;
 }
 
@@ -328,7 +331,7 @@ const dds::Credit* IntakeCheck::find_ended(std::uint64_t session) const noexcept
 
 /// Free places become credit. One is kept for the end that append_end() may add.
 void IntakeCheck::grant(const Surroundings& around) noexcept {
-  if (!may_send() || around.free_places <= 1) return;
+  if (!is_accepting(phase_) || around.free_places <= 1) return;
   granted_end_ = std::max(granted_end_, next_ + around.free_places - 1);
 }
 
@@ -337,7 +340,7 @@ dds::Credit IntakeCheck::credit(const Surroundings& around) {
   newest_.session = session_;
   newest_.service_id = service_id_;
   newest_.next_sequence = next_;
-  newest_.credits = may_send() ? static_cast<std::uint32_t>(granted_end_ - next_) : 0;
+  newest_.credits = is_accepting(phase_) ? static_cast<std::uint32_t>(granted_end_ - next_) : 0;
   published_ns_ = around.now_ns;
   published_end_ = granted_end_;
   return newest_;

@@ -10,6 +10,7 @@
 #include "meridian/path/block_reject.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "service/protocol/block_check.hpp"
+#include "service/protocol/session_phase.hpp"
 #include "service/transport/messages.hpp"
 
 namespace meridian::stream {
@@ -90,11 +91,11 @@ class IntakeCheck {
   /// else repeated every `kCreditRepeat_ns` while a session holds the machine.
   [[nodiscard]] std::optional<dds::Credit> due_credit(const Surroundings& around);
 
-  [[nodiscard]] bool is_held() const noexcept { return session_ != 0; }
-  [[nodiscard]] bool is_complete() const noexcept { return is_complete_; }
+  [[nodiscard]] bool is_held() const noexcept { return phase_ != SessionPhase::kFree; }
+  [[nodiscard]] bool is_complete() const noexcept { return has_end_mark(phase_); }
   /// Blocks are in, and none comes any more, nor an end: a refusal or its station ended the
   /// session. What is in is to be run to its end.
-  [[nodiscard]] bool is_cut_off() const noexcept { return session_ != 0 && is_refused_; }
+  [[nodiscard]] bool is_cut_off() const noexcept { return is_refused(phase_); }
   [[nodiscard]] std::uint64_t session() const noexcept { return session_; }
   [[nodiscard]] const dds::SessionRequest& request() const noexcept { return request_; }
   [[nodiscard]] const IntakeCounters& counters() const noexcept { return counters_; }
@@ -116,7 +117,7 @@ class IntakeCheck {
   [[nodiscard]] dds::Credit end_session(dds::Verdict verdict, std::string text,
                                         const Surroundings& around);
   [[nodiscard]] const dds::Credit* find_ended(std::uint64_t session) const noexcept;
-  [[nodiscard]] bool may_send() const noexcept { return !is_refused_ && !is_complete_; }
+  void change(SessionEvent event) noexcept { phase_ = phase_after(phase_, event); }
   void grant(const Surroundings& around) noexcept;
   [[nodiscard]] dds::Credit credit(const Surroundings& around);
   [[nodiscard]] bool take_blocks(const dds::Batch& batch, const Surroundings& around,
@@ -129,12 +130,11 @@ class IntakeCheck {
   IntakeCounters counters_;
   std::string message_;
 
-  std::uint64_t session_ = 0;  ///< 0: the machine is free
+  SessionPhase phase_ = SessionPhase::kFree;
+  std::uint64_t session_ = 0;  ///< that holds the machine; 0: it is free
   dds::SessionRequest request_;
   std::uint64_t next_ = 0;         ///< first sequence that is not in
   std::uint64_t granted_end_ = 0;  ///< sequences below it may be sent
-  bool is_complete_ = false;       ///< the end mark is in
-  bool is_refused_ = false;        ///< nothing more is accepted
   bool is_lost_ = false;           ///< its station is gone
   bool has_end_block_ = false;     ///< a block of kind kEnd is in
   dds::Credit newest_;             ///< the newest answer to the session

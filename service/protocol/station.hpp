@@ -85,6 +85,25 @@ class Station {
   [[nodiscard]] bool is_over() const noexcept { return state_ > StationState::kComplete; }
 
  private:
+  /// What is known of the source.
+  enum class SourceState : std::uint8_t {
+    kReady,
+    kWaiting,  ///< it had nothing when asked last
+    kAtEnd     ///< it has no more
+  };
+  /// The open, and its repetitions once the session is open.
+  enum class Asking : std::uint8_t {
+    kNotAsked,
+    kAsked,  ///< and not answered yet
+    kAnswered,
+    kAskedAgain  ///< the service fell silent: until it answers nothing is sent
+  };
+  /// What is sent next.
+  struct Cursor {
+    std::uint64_t sequence = 0;
+    bool is_end_sent = false;  ///< the end mark went out after `sequence` got to the end
+  };
+
   void fill(std::uint64_t wanted);
   [[nodiscard]] bool is_worth_sending(std::uint64_t count, std::uint64_t there,
                                       std::int64_t now_ns);
@@ -100,19 +119,15 @@ class Station {
 
   std::deque<ClBlock> blocks_;  ///< read and not acknowledged, from sequence `acknowledged_`
   std::uint64_t acknowledged_ = 0;
-  std::uint64_t cursor_ = 0;                        ///< next sequence to be sent
-  std::uint64_t granted_end_ = 0;                   ///< sequences below it may be sent
-  bool is_at_end_ = false;                          ///< the source has no more
-  bool is_source_waiting_ = false;                  ///< it had nothing when asked last
+  Cursor cursor_;
+  Cursor cursor_before_;           ///< of the newest batch, for on_not_sent()
+  std::uint64_t granted_end_ = 0;  ///< sequences below it may be sent
+  SourceState source_state_ = SourceState::kReady;
   std::optional<std::int64_t> gathering_since_ns_;  ///< when a small batch was first held back
-  bool is_end_sent_ = false;  ///< the end mark went out after `cursor_` got to the end
   std::uint64_t service_id_ = 0;
   std::int64_t opened_ns_ = 0, asked_ns_ = 0, heard_ns_ = 0, progress_ns_ = 0, went_back_ns_ = 0;
   std::uint64_t went_back_to_ = ~std::uint64_t{0};
-  bool is_asked_ = false;
-  bool awaits_answer_ = false;       ///< asked again, not answered yet
-  std::uint64_t cursor_before_ = 0;  ///< of the newest batch, for on_not_sent()
-  bool end_sent_before_ = false;
+  Asking asking_ = Asking::kNotAsked;
 };
 
 }  // namespace meridian::stream

@@ -49,7 +49,7 @@ bool is_regular(const StreamOptions& options) {
   return !is_pipe(options) && std::filesystem::is_regular_file(options.file, ignored);
 }
 
-dds::SessionRequest request_of(const StreamOptions& options) {
+dds::SessionRequest request_of(const StreamOptions& options, std::ifstream& file) {
   dds::SessionRequest request;
   request.session = draw_id();
   request.station = options.station;
@@ -66,6 +66,7 @@ dds::SessionRequest request_of(const StreamOptions& options) {
     request.block_count = options.preflight->blocks;
     if (options.preflight->contains_actions) request.policies |= dds::kPolicyContainsActions;
   }
+  if (is_regular(options)) request.file_checksum = checksum_of(file);
   return request;
 }
 
@@ -111,6 +112,115 @@ void hear_end(StationLink& link, std::uint64_t session, Newsreader& news) {
   }
 }
 
+constexpr std::int64_t kPatience_ns = 5'000'000'000;
+
+/// One program on its path into the machine.
+class StreamRun {
+ public:
+  /// `file` is open, or the source is a pipe.
+  StreamRun(dds::Participant& participant, const StreamOptions& options, std::ifstream& file,
+            const StreamListener& listener)
+      : options_(options),
+        listener_(listener),
+        request_(request_of(options, file)),
+        reader_(file, options.file, options.reader),
+        station_(request_, [this] { return pump_ ? pump_->take() : supply_of(reader_); }),
+        link_(participant, station_),
+        meter_(options.preflight ? options.preflight->times : TimeTable{}),
+        news_(listener) {
+    if (!is_pipe(options)) return;
+    pump_.emplace(STDIN_FILENO, kStandardInput, options.reader, [this] { link_.wake(); });
+  }
+  StreamRun(const StreamRun&) = delete;
+  StreamRun& operator=(const StreamRun&) = delete;
+
+  [[nodiscard]] StreamEnd run(const std::atomic<bool>& is_stopping) {
+    heard_ns_ = steady_ns();
+    while (!station_.is_over()) {
+      if (station_.state() == StationState::kComplete && !options_.is_waiting_for_end) break;
+      if (is_stopping.load()) {
+        link_.close();
+        listener_.say("interrupted: the machine runs the blocks that it has and stops");
+        return StreamEnd::kInterrupted;
+      }
+      if (!follow()) {
+        listener_.say("no word from the service for 5 s: is meridiand still running?");
+        return StreamEnd::kNoPeer;
+      }
+    }
+    const dds::Verdict verdict = station_.credit().verdict;
+    const bool has_ended = verdict == dds::Verdict::kRan || verdict == dds::Verdict::kAborted;
+    if (has_ended) hear_end(link_, request_.session, news_);
+    return end();
+  }
+
+ private:
+  /// One turn of the link, and what came with it. False where the service is silent for too long.
+  [[nodiscard]] bool follow() {
+    constexpr std::chrono::milliseconds kIdle{50};
+    const bool has_credit = link_.work(kIdle);
+    say_warnings();
+    news_.station(station_.message());
+    const std::int64_t now_ns = steady_ns();
+    if (has_credit) heard_ns_ = now_ns;
+    const auto status = link_.take_status();
+    if (!status) return now_ns - heard_ns_ <= kPatience_ns;
+    heard_ns_ = now_ns;
+    const bool is_ours = status->session == request_.session;
+    if (is_ours) {
+      const ProgressView view = meter_.look(*status, now_ns);
+      if (view.is_under_way) listener_.show(view);
+    }
+    if (is_ours || station_.state() != StationState::kOpening) news_.status(*status);
+    return true;
+  }
+
+  /// Says what the reader found odd, where no check before has said it.
+  void say_warnings() {
+    if (options_.preflight) return;
+    const auto say = [this](const cl::ClWarning& warning) {
+      listener_.say(request_.program + ":" + std::to_string(warning.line) +
+                    ": warning: " + warning.message);
+    };
+    if (pump_) {
+      for (const cl::ClWarning& warning : pump_->take_warnings()) say(warning);
+    }
+    for (; warnings_said_ < reader_.warnings().size(); ++warnings_said_) {
+      say(reader_.warnings()[warnings_said_]);
+    }
+  }
+
+  /// What became of it, as the station saw it.
+  [[nodiscard]] StreamEnd end() {
+    switch (station_.state()) {
+      case StationState::kComplete:
+      case StationState::kRan:
+        return StreamEnd::kFine;
+      case StationState::kBadSource:
+        link_.close();
+        listener_.say(station_.message());
+        return StreamEnd::kInputRefused;
+      case StationState::kNoAnswer:
+        listener_.say(station_.message());
+        return StreamEnd::kNoPeer;
+      default:
+        return StreamEnd::kMachineRefused;
+    }
+  }
+
+  const StreamOptions& options_;
+  const StreamListener& listener_;
+  dds::SessionRequest request_;
+  cl::ClReader reader_;
+  Station station_;
+  StationLink link_;
+  std::optional<SourcePump> pump_;  ///< of standard input
+  ProgressMeter meter_;
+  Newsreader news_;
+  std::size_t warnings_said_ = 0;
+  std::int64_t heard_ns_ = 0;  ///< when the service said anything last
+};
+
 }  // namespace
 
 StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options,
@@ -123,76 +233,7 @@ StreamEnd run_stream(dds::Participant& participant, const StreamOptions& options
       return StreamEnd::kInputRefused;
     }
   }
-  dds::SessionRequest request = request_of(options);
-  if (is_regular(options)) request.file_checksum = checksum_of(file);
-  cl::ClReader reader(file, options.file, options.reader);
-  Source source = [&reader] { return supply_of(reader); };
-  Station station(request, [&source] { return source(); });
-  StationLink link(participant, station);
-  std::optional<SourcePump> pump;
-  if (is_pipe(options)) {
-    pump.emplace(STDIN_FILENO, kStandardInput, options.reader, [&link] { link.wake(); });
-    source = [&pump] { return pump->take(); };
-  }
-  auto say_warnings = [&, reported = std::size_t{0}]() mutable {
-    if (options.preflight) return;
-    const auto say = [&](const cl::ClWarning& warning) {
-      listener.say(request.program + ":" + std::to_string(warning.line) +
-                   ": warning: " + warning.message);
-    };
-    if (pump) {
-      for (const cl::ClWarning& warning : pump->take_warnings()) say(warning);
-    }
-    for (; reported < reader.warnings().size(); ++reported) say(reader.warnings()[reported]);
-  };
-  ProgressMeter meter(options.preflight ? options.preflight->times : TimeTable{});
-  Newsreader news(listener);
-
-  constexpr std::chrono::milliseconds kIdle{50};
-  constexpr std::int64_t kPatience_ns = 5'000'000'000;
-  std::int64_t heard_ns = steady_ns();
-  while (!station.is_over()) {
-    if (station.state() == StationState::kComplete && !options.is_waiting_for_end) break;
-    if (is_stopping.load()) {
-      link.close();
-      listener.say("interrupted: the machine runs the blocks that it has and stops");
-      return StreamEnd::kInterrupted;
-    }
-    const bool has_credit = link.work(kIdle);
-    say_warnings();
-    news.station(station.message());
-    const std::int64_t now_ns = steady_ns();
-    if (has_credit) heard_ns = now_ns;
-    if (const auto status = link.take_status()) {
-      heard_ns = now_ns;
-      const bool is_ours = status->session == request.session;
-      if (is_ours) {
-        const ProgressView view = meter.look(*status, now_ns);
-        if (view.is_under_way) listener.show(view);
-      }
-      if (is_ours || station.state() != StationState::kOpening) news.status(*status);
-    } else if (now_ns - heard_ns > kPatience_ns) {
-      listener.say("no word from the service for 5 s: is meridiand still running?");
-      return StreamEnd::kNoPeer;
-    }
-  }
-  const dds::Verdict verdict = station.credit().verdict;
-  const bool has_ended = verdict == dds::Verdict::kRan || verdict == dds::Verdict::kAborted;
-  if (has_ended) hear_end(link, request.session, news);
-  switch (station.state()) {
-    case StationState::kComplete:
-    case StationState::kRan:
-      return StreamEnd::kFine;
-    case StationState::kBadSource:
-      link.close();
-      listener.say(station.message());
-      return StreamEnd::kInputRefused;
-    case StationState::kNoAnswer:
-      listener.say(station.message());
-      return StreamEnd::kNoPeer;
-    default:
-      return StreamEnd::kMachineRefused;
-  }
+  return StreamRun(participant, options, file, listener).run(is_stopping);
 }
 
 }  // namespace meridian::stream
