@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
+#include "meridian/units.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "support/draws.hpp"
@@ -65,6 +69,48 @@ TEST(VerticalTool, MayBeTiltedByLittleOnARunOfMicrometres) {
       EXPECT_LT(trace.duration_s(), 1 + length_mm / kFeed_mm_per_s);
     }
   }
+}
+
+/// The axis runs about the pole, `tilt_deg` beside it, by turns of the redundant joint that are
+/// wider than the corridor; then the tool is vertical, and rests.
+std::vector<ClBlock> from_a_circle(double tilt_deg, double step_deg, double step_mm) {
+  const double tilt = units::rad_from_deg(tilt_deg), step = units::rad_from_deg(step_deg);
+  constexpr int kSteps = 16;
+  std::vector<ClBlock> blocks;
+  const auto add = [&](const Vector3& axis) {
+    const int n = static_cast<int>(blocks.size());
+    blocks.push_back(block_to(n, 20 + step_mm * n, axis));
+  };
+  for (int n = 0; n <= kSteps; ++n) {
+    add({std::sin(tilt) * std::cos(step * n), std::sin(tilt) * std::sin(step * n), std::cos(tilt)});
+  }
+  for (int n = 0; n < 4; ++n) add({0, 0, 1});
+  end_program(blocks);
+  return blocks;
+}
+
+TEST(VerticalTool, IsLedOntoThePoleFromCirclesAboutIt) {
+  double largest = 0;
+  for (const std::string& name : shipped_machines()) {
+    const MachineModel model = config::load_machine(shipped_file(name));
+    if (redundant_joint(model) < 0) continue;
+    for (const double tilt_deg : cases({0.5, 1.0, 2.2, 4.0})) {
+      for (const double step_deg : cases({4.0, 12.0, 25.0})) {
+        for (const double step_mm : cases({0.1, 0.5})) {
+          SCOPED_TRACE(testing::Message() << name << ", " << tilt_deg << " deg, " << step_deg
+                                          << " deg, " << step_mm << " mm");
+          const auto blocks = from_a_circle(tilt_deg, step_deg, step_mm);
+          const SmoothTrace trace = plan_smooth(model, blocks, joints_of(model, blocks[0]));
+          EXPECT_EQ(trace.last.status, PlanStatus::kOk) << static_cast<int>(trace.last.reject.code);
+          const auto setpoints = sample(model, trace, 1e-3, 0.37, joints_of(model, blocks[0]));
+          const LimitUse use = measure_limits(model, setpoints, 1e-3);
+          EXPECT_LE(std::max({use.v, use.a, use.j}), 1 + 1e-6) << use.where;
+          largest = std::max({largest, use.v, use.a, use.j});
+        }
+      }
+    }
+  }
+  std::printf("%.6f of the limits\n", largest);
 }
 
 }  // namespace

@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kCutGrowth = 1.5, kFarthestCut_mm = 5, kFirstCut = 0.25;
 constexpr double kMinPart_mm = 1e-6;
+constexpr int kShorter = 6;  // stretches that are tried where the whole one has no way
+constexpr double kShorterShare = 0.4;
 /// Spans farther off than this (11.5 deg) are not held back. u advances by at least 50 mm per rad
 /// of axis, so a zone beside them still has half of its reach.
 constexpr double kOutOfReach_rad = 0.5 * kPoleReach_mm / kAxisLength_mm_per_rad;
@@ -129,22 +131,40 @@ void PoleCorridor::scan() noexcept {
   }
 }
 
+void PoleCorridor::lead_to(PolePlace& place) const noexcept {
+  place.joints = place.at_begin == PoleJoin::kExact ? follow_to(place.begin) : known_;
+}
+
+std::span<const PoleZone> PoleCorridor::find_string(PoleStretch& stretch) noexcept {
+  const PoleTask task{model_, probes_, programmed_, tool_length_mm_, tolerance_rad_, is_exact_};
+  PolePlace& place = stretch.place;
+  auto pieces = string_.find(task, place);
+  double reach = kPoleReach_mm;
+  for (int n = 0; n < kShorter && place.is_on_pole && pieces.empty(); ++n) {
+    reach *= kShorterShare;
+    if (!stretches_.shorten(stretch, reach)) continue;
+    lead_to(place);
+    pieces = string_.find(task, place);
+  }
+  return pieces;
+}
+
 void PoleCorridor::settle(PoleStretch& stretch) noexcept {
   PolePlace& place = stretch.place;
-  const bool begins_exact = place.at_begin == PoleJoin::kExact;
-  place.joints = begins_exact ? follow_to(place.begin) : known_;
+  lead_to(place);
   place.rate = held_rate_;
   place.is_on_pole = is_on_pole(stretch);
   const auto waiting = static_cast<std::size_t>(pending_.end_index() - pending_.begin_index());
   bool is_exact_best = false;
   if (stretch.has_room && waiting + FreeSpline::kPieces <= kPending) {
-    const PoleTask task{model_, probes_, programmed_, tool_length_mm_, tolerance_rad_, is_exact_};
-    const auto pieces = string_.find(task, place);
+    const auto pieces = find_string(stretch);
     for (const PoleZone& piece : pieces) pending_.push(piece);
     if (!pieces.empty()) return know_behind(pieces.back());
     is_exact_best = string_.is_exact_best();
   }
-  if (!begins_exact && !is_exact_best && is_off_exact(place)) {
+  const bool leads_exactly =
+      !place.is_on_pole && (place.at_begin == PoleJoin::kExact || !is_off_exact(place));
+  if (!is_exact_best && !leads_exactly) {
     has_failed_ = true;
     return;
   }

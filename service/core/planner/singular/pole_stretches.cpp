@@ -154,6 +154,7 @@ PoleStretches::Answer PoleStretches::decide(PoleStretch& out) noexcept {
   const double core_begin =
       settled_.is_held ? settled_.end : std::min(out.nearest, probes_.u_of(place_));
   out.has_room = true;
+  out.close_begin = core_begin;
   place_begin(out, core_begin);
   PolePlace& place = out.place;
   const bool is_open = !run_.has_left && !settled_.is_whole;
@@ -172,6 +173,7 @@ PoleStretches::Answer PoleStretches::decide(PoleStretch& out) noexcept {
     out.last = run_.last;
     const double core_end = std::max(probes_.u_of(run_.last), nearest_about(run_.last));
     if (!is_known_behind(core_end)) return Answer::kNeedsSpans;
+    out.close_end = core_end;
     place_end(out, core_end);
   }
   place_ = out.last + 1;
@@ -193,6 +195,20 @@ void PoleStretches::place_end(PoleStretch& out, double core_end) const noexcept 
   const double room = find_room_behind(core_end);
   place.end = snapped(core_end + room);
   out.has_room = out.has_room && room > kMinReach_mm;
+}
+
+bool PoleStretches::shorten(PoleStretch& stretch, double reach_mm) const noexcept {
+  PolePlace& place = stretch.place;
+  const double begin = snapped(stretch.close_begin - reach_mm);
+  const double end = snapped(stretch.close_end + reach_mm);
+  const bool begins_later = place.at_begin != PoleJoin::kHeld && begin > place.begin + kMinReach_mm;
+  const bool ends_earlier = place.at_end == PoleJoin::kExact && end < place.end - kMinReach_mm;
+  if (begins_later) {
+    place.begin = begin;
+    place.at_begin = PoleJoin::kExact;
+  }
+  if (ends_earlier) place.end = end;
+  return begins_later || ends_earlier;
 }
 
 }  // namespace meridian

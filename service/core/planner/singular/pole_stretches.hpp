@@ -24,6 +24,7 @@ struct PoleStretch {
   PolePlace place;                        ///< all but the joints
   PoleProbes::Place first = 0, last = 0;  ///< of the path close to the pole
   double nearest = 0;                     ///< u: where it comes closest first
+  double close_begin = 0, close_end = 0;  ///< u: between them the path is close to the pole
   bool has_room = false;  ///< the redundant joint may go another way than the exact one there
 };
 
@@ -56,6 +57,9 @@ class PoleStretches {
   [[nodiscard]] bool find_next(const SettledPath& settled) noexcept;
   /// Decides the place that was found. Behind anything but kNeedsSpans it is done with it.
   [[nodiscard]] Answer decide(PoleStretch& out) noexcept;
+  /// Lets a stretch reach no farther than `reach_mm` to either side of what is close, where the
+  /// exact way leads there. False: it does not reach that far.
+  [[nodiscard]] bool shorten(PoleStretch& stretch, double reach_mm) const noexcept;
   /// Takes the last answer back.
   void go_back_to(Place place) noexcept { place_ = place; }
 
