@@ -13,6 +13,7 @@
 #include "meridian/cycle/rate_filter.hpp"
 #include "meridian/cycle/state.hpp"
 #include "meridian/cycle/stop_law.hpp"
+#include "meridian/cycle/stop_mode.hpp"
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
@@ -95,13 +96,7 @@ struct SentSetpoint {
 /// A stop that is going on: on the path, or with every joint on its own line where the path cannot
 /// be evaluated any more.
 struct StopInProgress {
-  bool is_active = false;
-  bool is_off_path = false;  ///< joints = begin + direction · law instead of the path
-  /// Along the plan, its rate going down to zero, until there is authority for `law`.
-  bool is_by_rate = false;
-  bool is_fault = false;  ///< by the FaultStop limits
-  /// Drives went on by themselves before it: it began where they are, in travel or out of it.
-  bool may_leave_travel = false;
+  StopMode mode = StopMode::kNone;
   StopLaw law;             ///< path length; off the path: seconds at the speed of the begin
   double time = 0;         ///< since it or its law began
   double passed = 0;       ///< path length of the path pieces left behind since it began
@@ -109,15 +104,22 @@ struct StopInProgress {
   double speed_begin = 0;  ///< ṡ when it began
   double stopping_time = 0, stopping_distance = 0;  ///< as laid out, for the report
   JointVector begin{};                              ///< joints when it began
-  JointVector direction{};                          ///< is_off_path: joint velocity when it began
+  JointVector direction{};                          ///< off the path: joint velocity when it began
   JointVector deviation{};    ///< joints beside the path when it began (taken from feedback)
   double deviation_time = 0;  ///< time in which `deviation` is run down to zero
+
+  [[nodiscard]] bool is_active() const noexcept { return mode != StopMode::kNone; }
+  void change(StopEvent event) noexcept { mode = mode_after(mode, event); }
 };
 
 /// An operator's hand on the joints, one of them at a time, or on the tool.
 struct Jogging {
-  bool is_active = false;
-  bool is_let_go = false;  ///< the hand is gone: what moves comes to rest, and that was it
+  enum class Hold : std::uint8_t {
+    kNone,     ///< nobody jogs
+    kHeld,     ///< orders are taken
+    kReleased  ///< the hand is gone: what moves comes to rest, and that was it
+  };
+  Hold hold = Hold::kNone;
   bool has_order = false;
   JogOrder order;          ///< in force
   double silence = 0;      ///< s since it came
@@ -129,37 +131,53 @@ struct Jogging {
   ToolPath way;  ///< of a ToolAxis
   ToolSurvey survey;
   JogRates fault;  ///< what a FaultStop may use
+
+  [[nodiscard]] bool is_active() const noexcept { return hold != Hold::kNone; }
+  [[nodiscard]] bool is_let_go() const noexcept { return hold == Hold::kReleased; }
 };
 
 /// Drives that look for their references by themselves, group by group.
 struct Homing {
   enum class Phase : std::uint8_t {
+    kNone,    ///< no drive is homing
     kBegin,   ///< drives are asked for homing mode
     kSearch,  ///< they move until they find their references
     kHalt,    ///< they are commanded to stop searching
     kLeave,   ///< asked to follow setpoints again, which stand where they report to be
     kSettle   ///< until they have seen the setpoint that stays
   };
-  bool is_active = false;
+  Phase phase = Phase::kNone;
   bool has_failed = false;
-  Phase phase = Phase::kBegin;
   std::uint32_t left = 0;   ///< joints whose turn comes later
   std::uint32_t busy = 0;   ///< joints whose drives are homing; their setpoints are their feedback
   std::uint32_t begun = 0;  ///< of those, the ones that were seen to search
   double time = 0;          ///< s in this phase
   std::uint64_t settled_cycle = 0;  ///< the setpoint of this cycle stays
+
+  [[nodiscard]] bool is_active() const noexcept { return phase != Phase::kNone; }
 };
 
 /// The program rests behind every block, until the operator sends it on.
 struct SingleBlock {
+  enum class Phase : std::uint8_t {
+    kRunning,
+    kBraking,  ///< the rate goes down to rest at the end of `sequence`
+    kResting   ///< at rest at the end of a block, which is done
+  };
   bool is_on = false;
-  bool is_behind = false;        ///< at rest at the end of a block, which is done
-  bool is_braking = false;       ///< the rate goes down to rest at the end of `sequence`
-  int pieces = 0;                ///< is_braking: that end before the time piece on which it lies
-  double time = 0;               ///< is_braking: plan time on that piece
+  Phase phase = Phase::kRunning;
+  int pieces = 0;                ///< kBraking: that end before the time piece on which it lies
+  double time = 0;               ///< kBraking: plan time on that piece
   std::uint64_t sequence = 0;    ///< of the block that ends there
   std::uint32_t line = 0;        ///< its source line
   std::uint64_t next_block = 0;  ///< ends of blocks before it are behind the machine
+
+  [[nodiscard]] bool is_braking() const noexcept { return phase == Phase::kBraking; }
+  [[nodiscard]] bool is_behind() const noexcept { return phase == Phase::kResting; }
+  /// Something else than the end of a block brakes the machine from here on.
+  void leave_brake() noexcept {
+    if (is_braking()) phase = Phase::kRunning;
+  }
 };
 
 /// Drives that are to be off, window by window (cycle/drive_watch.hpp).

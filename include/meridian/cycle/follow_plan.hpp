@@ -25,16 +25,16 @@ namespace meridian {
 /// Plan and queue are at their end and the program is not: at rest, waiting for blocks.
 inline void starve(Cycle& c) noexcept {
   report_block_done(c);
-  rest(c);
+  rest(c.state);
   ++c.state.starvations;
   c.state.starved_session = c.in.session;
   enter(c, State::kStarving);
   enter(c, State::kStarved);
 }
 
-/// Lets the rate follow the override of the piece in force, over the factor that the piece's feed
-/// was planned with. Where the plan rests, it jumps there.
-inline void aim_rate(Cycle& c) noexcept {
+/// The rate that the override of the piece in force asks for, over the factor that the piece's feed
+/// was planned with.
+[[nodiscard]] inline double wanted_rate(const Cycle& c) noexcept {
   const MotionKind motion = c.reader.path()->motion;
   const bool is_rapid = motion == MotionKind::kRapid || motion == MotionKind::kApproach;
   // The stop distance that a probing move was begun with is that of its own feed.
@@ -44,6 +44,12 @@ inline void aim_rate(Cycle& c) noexcept {
   double wanted = is_rapid ? c.state.rapid_override : feed_override / c.reader.piece()->feed_factor;
   // It comes in mid-cut and ends in the cut: whoever slowed the cut down slowed it too.
   if (motion == MotionKind::kUnwind) wanted = std::min(wanted, c.state.rapid_override);
+  return wanted;
+}
+
+/// Lets the rate follow the override of the piece in force. Where the plan rests, it jumps there.
+inline void aim_rate(Cycle& c) noexcept {
+  const double wanted = wanted_rate(c);
   if (is_plan_at_rest(c)) {
     c.state.rate.reset(rate_from_rest(c, std::min(wanted, 1.0)));
   } else {
@@ -85,7 +91,7 @@ inline void stop_at_barrier(Cycle& c) noexcept {
 /// One period at a rest of the plan that something must end.
 inline void wait_at_barrier(Cycle& c) noexcept {
   const TimePiece& piece = *c.reader.piece();
-  rest(c);
+  rest(c.state);
   c.state.barrier_time += c.dt;
   switch (piece.kind) {
     case TimeKind::kDwell:
@@ -126,10 +132,10 @@ inline void wait_at_barrier(Cycle& c) noexcept {
 /// False if the path cannot be evaluated.
 [[nodiscard]] inline bool move_one_period(Cycle& c) noexcept {
   SingleBlock& single = c.state.single_block;
-  if (!single.is_braking) aim_rate(c);
-  const bool seeks_end = single.is_on && !single.is_braking;
+  if (!single.is_braking()) aim_rate(c);
+  const bool seeks_end = single.is_on && !single.is_braking();
   c.state.piece_time += seeks_end ? advance_to_block_end(c) : c.state.rate.advance(c.dt);
-  if (single.is_braking) {
+  if (single.is_braking()) {
     follow_braking_rate(c);
     return true;
   }
@@ -173,7 +179,7 @@ inline void wait_at_barrier(Cycle& c) noexcept {
     }
   }
   if (!is_on_move(c)) {
-    rest(c);
+    rest(c.state);
     if (c.reader.piece() == nullptr) starve(c);
     return true;
   }
@@ -183,7 +189,7 @@ inline void wait_at_barrier(Cycle& c) noexcept {
 
 /// Starved: goes on by itself where blocks came in time and from the same session.
 inline void wait_for_blocks(Cycle& c) noexcept {
-  rest(c);
+  rest(c.state);
   if (c.reader.piece() == nullptr && !next_piece(c)) return;
   if (c.state.state_time <= c.machine.starve_auto_resume_s &&
       c.in.session == c.state.starved_session) {

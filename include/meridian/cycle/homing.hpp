@@ -32,7 +32,7 @@ struct HomingAsked {
 
 [[nodiscard]] inline HomingAsked asked_of(const Homing& homing) noexcept {
   using Phase = Homing::Phase;
-  if (!homing.is_active || homing.phase >= Phase::kLeave) return {};
+  if (!homing.is_active() || homing.phase >= Phase::kLeave) return {};
   return {homing.busy, homing.phase == Phase::kSearch ? homing.busy : 0};
 }
 
@@ -71,18 +71,17 @@ inline bool take_group(const MachineModel& machine, const CycleOptions& options,
 }
 
 /// Begins to home the joints of `mask`; one of a stage takes the other along.
-inline void begin_homing(Cycle& c, std::uint32_t mask) noexcept {
-  Homing& homing = c.state.homing;
-  homing = {};
-  homing.is_active = true;
-  const std::uint32_t pair = stage_pair(c.machine);
+[[nodiscard]] inline Homing begin_homing(const MachineModel& machine, const CycleOptions& options,
+                                         std::uint32_t mask) noexcept {
+  Homing homing;
+  const std::uint32_t pair = stage_pair(machine);
   homing.left = (mask & pair) != 0 ? mask | pair : mask;
-  (void)take_group(c.machine, c.state.options, homing);
+  (void)take_group(machine, options, homing);
+  return homing;
 }
 
 /// Asks the drives to stop searching; the joints whose turn has not come keep their place.
-inline void halt_homing(Cycle& c) noexcept {
-  Homing& homing = c.state.homing;
+inline void halt_homing(Homing& homing) noexcept {
   homing.left = 0;
   if (homing.phase <= Homing::Phase::kSearch) enter_phase(homing, Homing::Phase::kHalt);
 }
@@ -92,7 +91,7 @@ inline void fail_homing(Cycle& c, Alarm alarm, std::uint32_t joints) noexcept {
   emit(c, EventCode::kAlarm, static_cast<std::uint64_t>(alarm),
        static_cast<std::uint64_t>(std::countr_zero(joints)), c.state.homing.time);
   c.state.homing.has_failed = true;
-  halt_homing(c);
+  halt_homing(c.state.homing);
 }
 
 /// Setpoints of the drives that are in homing mode go where they report to be; whoever is not there
@@ -134,44 +133,52 @@ inline void watch_search(Cycle& c) noexcept {
   return false;
 }
 
-/// One cycle of Homing. False when it is over, whatever became of it. `is_stuck` where drives do
-/// not come back from homing mode.
-[[nodiscard]] inline bool follow_homing(Cycle& c, bool& is_stuck) noexcept {
+enum class HomingStep : std::uint8_t {
+  kGoesOn,
+  kStuck,  ///< the same, and drives do not come back from homing mode
+  kOver    ///< whatever became of it
+};
+
+/// One cycle of Homing.
+[[nodiscard]] inline HomingStep follow_homing(Cycle& c) noexcept {
   using Phase = Homing::Phase;
   Homing& homing = c.state.homing;
   const Feedback& f = c.drives;
-  rest(c);
+  rest(c.state);
   homing.time += c.dt * c.periods;
   const bool is_late = homing.time > kChangeMode_s;
+  const HomingStep step = is_late ? HomingStep::kStuck : HomingStep::kGoesOn;
   if (homing.phase != Phase::kSettle) let_homing_move(c);
   switch (homing.phase) {
+    case Phase::kNone:
+      return HomingStep::kOver;
     case Phase::kBegin:
       if ((f.homing_mask & homing.busy) == homing.busy) {
         enter_phase(homing, Phase::kSearch);
       } else if (is_late) {
         fail_homing(c, Alarm::kHomingTimeout, homing.busy & ~f.homing_mask);
       }
-      return true;
+      return HomingStep::kGoesOn;
     case Phase::kSearch:
       watch_search(c);
-      return true;
+      return HomingStep::kGoesOn;
     case Phase::kHalt:
       if ((f.homing_mask & homing.busy & ~f.still_mask) == 0 || is_late) {
         enter_phase(homing, Phase::kLeave);
       }
-      return true;
+      return HomingStep::kGoesOn;
     case Phase::kLeave:
       if ((f.homing_mask & homing.busy) == 0) {
         enter_phase(homing, Phase::kSettle);
         homing.settled_cycle = c.in.cycle;
       }
-      is_stuck = is_late;
-      return true;
-    case Phase::kSettle:
-      is_stuck = is_late;
-      return f.cycle_seen < homing.settled_cycle || finish_group(c);
+      return step;
+    case Phase::kSettle: {
+      const bool goes_on = f.cycle_seen < homing.settled_cycle || finish_group(c);
+      return goes_on || is_late ? step : HomingStep::kOver;
+    }
   }
-  return true;
+  return HomingStep::kGoesOn;
 }
 
 }  // namespace meridian

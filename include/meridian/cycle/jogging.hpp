@@ -21,34 +21,33 @@ inline constexpr double kFirstOrder_s = 0.5;
 /// No operator may ask for a longer dead man's time.
 inline constexpr double kLongestDeadMan_s = 0.5;
 
-/// Orders of before this, and of another hand than `request`, are none of this hand's.
-inline void begin_jogging(Cycle& c, std::uint64_t request) noexcept {
-  Jogging& jogging = c.state.jogging;
-  jogging = {};
-  jogging.is_active = true;
+/// Orders up to `sample`, and of another hand than `request`, are none of this hand's.
+[[nodiscard]] inline Jogging begin_jogging(std::uint64_t request, std::uint64_t sample) noexcept {
+  Jogging jogging;
+  jogging.hold = Jogging::Hold::kHeld;
   jogging.hand = request;
-  jogging.order.sample = c.in.jog.sample;
+  jogging.order.sample = sample;
   jogging.order.dead_man_s = kFirstOrder_s;
-  c.state.motion = MotionKind::kApproach;
+  return jogging;
 }
 
 /// A hand that was silent for longer than its dead man's time let go.
 inline void check_silence(Jogging& jogging) noexcept {
-  if (!(jogging.silence <= jogging.order.dead_man_s)) jogging.is_let_go = true;
+  if (!(jogging.silence <= jogging.order.dead_man_s)) jogging.hold = Jogging::Hold::kReleased;
 }
 
-/// Counts the silence, also that of periods which nobody saw, and takes a newer order of this epoch
-/// where the hand is still there: one that let go is not taken again. The silence is counted from
-/// when the order was said: what a wire delays moves nothing for longer than the dead man's time,
-/// and an order that is older when it comes in is passed over, where it does not let go.
-inline void take_order(Cycle& c) noexcept {
-  Jogging& jogging = c.state.jogging;
-  const JogOrder& order = c.in.jog;
-  jogging.silence += c.dt * (1.0 + c.in.lost_periods);  // c.periods is 1 where nothing moved
+/// Counts the silence, `elapsed` s with periods which nobody saw, and takes a newer order of
+/// `epoch` where the hand is still there: one that let go is not taken again. The silence is
+/// counted from when the order was said: what a wire delays moves nothing for longer than the dead
+/// man's time, and an order that is older when it comes in is passed over, where it does not let
+/// go.
+inline void take_order(Jogging& jogging, const JogOrder& order, std::uint16_t epoch,
+                       double elapsed) noexcept {
+  jogging.silence += elapsed;
   check_silence(jogging);
   const bool is_late = order.age_s > order.dead_man_s && order.velocity != 0;
-  const bool is_mine = order.hand == jogging.hand && order.epoch == c.state.epoch && !is_late;
-  if (is_mine && order.sample > jogging.order.sample && !jogging.is_let_go) {
+  const bool is_mine = order.hand == jogging.hand && order.epoch == epoch && !is_late;
+  if (is_mine && order.sample > jogging.order.sample && !jogging.is_let_go()) {
     jogging.has_order = true;
     jogging.order = order;
     jogging.order.dead_man_s = std::clamp(order.dead_man_s, 0.0, kLongestDeadMan_s);
@@ -74,11 +73,10 @@ inline void take_room(Jogging& jogging, const JogRoom& room) noexcept {
 }
 
 /// Goes on with the survey of the tool's way, after which it may move.
-[[gnu::noinline]] inline void survey_way(Cycle& c) noexcept {
-  Jogging& jogging = c.state.jogging;
+[[gnu::noinline]] inline void survey_way(Jogging& jogging, const MachineModel& machine) noexcept {
   if (jogging.is_ready || jogging.joint < kMaxJoints) return;
-  jogging.survey.go_on(c.machine, jogging.way);
-  if (jogging.survey.is_over()) take_room(jogging, jogging.survey.room(c.machine, jogging.way));
+  jogging.survey.go_on(machine, jogging.way);
+  if (jogging.survey.is_over()) take_room(jogging, jogging.survey.room(machine, jogging.way));
 }
 
 /// What the order in force is for, as Jogging::joint says it.
@@ -92,52 +90,51 @@ inline void take_room(Jogging& jogging, const JogRoom& room) noexcept {
 }
 
 /// Puts the hand on what is asked for, where nothing moves and it may be jogged.
-inline void choose_axis(Cycle& c) noexcept {
-  Jogging& jogging = c.state.jogging;
+inline void choose_axis(Jogging& jogging, const MachineModel& machine, const JointVector& joints,
+                        std::uint32_t referenced) noexcept {
   const JogOrder& order = jogging.order;
   const int joint = joint_of(order);
-  const std::uint32_t referenced = c.drives.referenced_mask;
-  if (is_in_hand(jogging)) return survey_way(c);
+  if (is_in_hand(jogging)) return survey_way(jogging, machine);
   if (!jogging.axis.is_at_rest()) return;
   jogging.joint = -1;
   jogging.is_ready = false;
-  if (!jogging.has_order || jogging.is_let_go || !may_jog(c.machine, joint, referenced)) return;
+  if (!jogging.has_order || jogging.is_let_go() || !may_jog(machine, joint, referenced)) return;
   if (!order.is_tool) {
     jogging.joint = joint;
-    return take_room(jogging,
-                     jog_room(c.machine, order.tool_length_mm, c.state.joints, joint, referenced));
+    return take_room(jogging, jog_room(machine, order.tool_length_mm, joints, joint, referenced));
   }
-  const bool has_way = lay_way(c.machine, c.state.joints, order.tool_length_mm,
+  const bool has_way = lay_way(machine, joints, order.tool_length_mm,
                                static_cast<ToolAxis>(order.joint), jogging.way);
   if (!has_way) return;
   jogging.joint = joint;
   jogging.distance = order.distance;
   jogging.axis = {};
-  jogging.survey = ToolSurvey(c.machine, jogging.way, c.state.joints, order.distance);
+  jogging.survey = ToolSurvey(machine, jogging.way, joints, order.distance);
 }
 
 /// Takes the hand off; the joints stay where they are.
-inline void end_jogging(Cycle& c) noexcept {
-  c.state.jogging = {};
-  rest(c);
+inline void end_jogging(CycleState& state) noexcept {
+  state.jogging = {};
+  rest(state);
 }
 
 /// The joints are where the axis is. False where there are none.
-[[nodiscard, gnu::noinline]] inline bool put_jogged(Cycle& c) noexcept {
-  const Jogging& jogging = c.state.jogging;
-  c.state.velocity = {};
+[[nodiscard, gnu::noinline]] inline bool put_jogged(const MachineModel& machine,
+                                                    CycleState& state) noexcept {
+  const Jogging& jogging = state.jogging;
+  state.velocity = {};
   if (!jogging.is_ready) return true;
   if (jogging.joint < kMaxJoints) {
-    c.state.joints[static_cast<std::size_t>(jogging.joint)] = jogging.axis.at.q;
-    c.state.velocity[static_cast<std::size_t>(jogging.joint)] = jogging.axis.at.v;
+    state.joints[static_cast<std::size_t>(jogging.joint)] = jogging.axis.at.q;
+    state.velocity[static_cast<std::size_t>(jogging.joint)] = jogging.axis.at.v;
     return true;
   }
   const auto at =
-      joints_on(c.machine, jogging.way, Jet<1>::variable(jogging.axis.at.q), c.state.joints);
+      joints_on(machine, jogging.way, Jet<1>::variable(jogging.axis.at.q), state.joints);
   if (at.status != SolveStatus::kOk) return false;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
-    c.state.joints[i] = value_of(at.q[i]);
-    c.state.velocity[i] = at.q[i].derivative(1) * jogging.axis.at.v;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
+    state.joints[i] = value_of(at.q[i]);
+    state.velocity[i] = at.q[i].derivative(1) * jogging.axis.at.v;
   }
   return true;
 }
@@ -151,25 +148,25 @@ enum class JogStep : std::uint8_t {
 /// One cycle of Jogging.
 [[nodiscard, gnu::noinline]] inline JogStep follow_jogging(Cycle& c) noexcept {
   Jogging& jogging = c.state.jogging;
-  take_order(c);
-  choose_axis(c);
-  const bool is_held = !jogging.is_let_go && is_in_hand(jogging);
+  // c.periods is 1 where nothing moved
+  take_order(jogging, c.in.jog, c.state.epoch, c.dt * (1.0 + c.in.lost_periods));
+  choose_axis(jogging, c.machine, c.state.joints, c.drives.referenced_mask);
+  const bool is_held = !jogging.is_let_go() && is_in_hand(jogging);
   const double fastest = c.in.max_jog_speed;
   const double velocity = std::clamp(jogging.order.velocity, -fastest, fastest);
   for (int n = 0; n < c.periods && jogging.is_ready; ++n) {
     follow(jogging.axis, is_held ? velocity : 0, c.dt);
   }
-  if (!put_jogged(c)) return JogStep::kNoJoints;
-  if (!jogging.is_let_go || !jogging.axis.is_at_rest()) return JogStep::kGoesOn;
-  end_jogging(c);
+  if (!put_jogged(c.machine, c.state)) return JogStep::kNoJoints;
+  if (!jogging.is_let_go() || !jogging.axis.is_at_rest()) return JogStep::kGoesOn;
+  end_jogging(c.state);
   return JogStep::kOver;
 }
 
 /// Takes the hand off by the operator's word or a fault: the joint brakes, with the limits of a
 /// FaultStop or its own.
-[[gnu::noinline]] inline void brake_jogging(Cycle& c, bool is_fault) noexcept {
-  Jogging& jogging = c.state.jogging;
-  jogging.is_let_go = true;
+[[gnu::noinline]] inline void brake_jogging(Jogging& jogging, bool is_fault) noexcept {
+  jogging.hold = Jogging::Hold::kReleased;
   if (jogging.is_ready) brake(jogging.axis, is_fault ? jogging.fault : jogging.axis.rates);
 }
 
@@ -179,9 +176,9 @@ enum class JogStep : std::uint8_t {
   for (int n = 0; n < c.periods && jogging.is_ready; ++n) {
     jogging.axis.ramp.advance(jogging.axis.at, c.dt);
   }
-  if (!put_jogged(c)) return JogStep::kNoJoints;
+  if (!put_jogged(c.machine, c.state)) return JogStep::kNoJoints;
   if (!jogging.axis.is_at_rest()) return JogStep::kGoesOn;
-  end_jogging(c);
+  end_jogging(c.state);
   return JogStep::kOver;
 }
 

@@ -23,7 +23,7 @@ namespace meridian {
 inline void drop_program(Cycle& c) noexcept {
   c.state.has_block = false;
   c.state.probing.state = ProbeState::kOff;
-  c.state.single_block.is_braking = c.state.single_block.is_behind = false;
+  c.state.single_block.phase = SingleBlock::Phase::kRunning;
   c.state.piece_time = 0;
   c.state.program_time = 0;
   // What it waited for, or was answered, is not of the program that comes.
@@ -131,10 +131,10 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
       return condition_of_dry_run(c, command.argument);
     case Verb::kStart:
       if ((f.referenced_mask & all) != all) return Refusal::kNotReferenced;
-      return !c.state.single_block.is_behind || leave_block(c) ? Refusal::kNone
-                                                               : Refusal::kNoProgram;
+      return !c.state.single_block.is_behind() || leave_block(c) ? Refusal::kNone
+                                                                 : Refusal::kNoProgram;
     case Verb::kResume:
-      if (c.state.single_block.is_behind) {
+      if (c.state.single_block.is_behind()) {
         return leave_block(c) ? Refusal::kNone : Refusal::kNoProgram;
       }
       return c.reader.piece() != nullptr || next_piece(c) ? Refusal::kNone : Refusal::kNoProgram;
@@ -176,9 +176,9 @@ inline void resume(Cycle& c) noexcept {
 
 /// Brings to rest what moves: the program, a joint that is jogged, drives that are homing.
 inline void begin_rest(Cycle& c) noexcept {
-  if (c.state.jogging.is_active) return brake_jogging(c, false);
-  if (c.state.homing.is_active) return halt_homing(c);
-  if (!c.state.stop.is_active) begin_stop(c, StopKind::kHold);
+  if (c.state.jogging.is_active()) return brake_jogging(c.state.jogging, false);
+  if (c.state.homing.is_active()) return halt_homing(c.state.homing);
+  if (!c.state.stop.is_active()) begin_stop(c, StopKind::kHold);
 }
 
 /// Goes to the state that the table names, as `command` asks for.
@@ -208,10 +208,12 @@ inline void go(Cycle& c, State next, const Command& command) noexcept {
     case State::kRunning:
       return resume(c);
     case State::kJogging:
-      begin_jogging(c, command.request);
+      c.state.jogging = begin_jogging(command.request, c.in.jog.sample);
+      c.state.motion = MotionKind::kApproach;
       break;
     case State::kHoming:
-      begin_homing(c, joints_to_home(c.machine, command.argument));
+      c.state.homing =
+          begin_homing(c.machine, c.state.options, joints_to_home(c.machine, command.argument));
       break;
     case State::kOff:
       c.state.alarm = Alarm::kNone;
@@ -225,9 +227,9 @@ inline void go(Cycle& c, State next, const Command& command) noexcept {
 
 /// A stop comes ahead of words that were said before it, and what would have led to motion of these
 /// is void, whether or not there was anything to stop.
-[[nodiscard]] inline Refusal condition_of_turn(Cycle& c, const Command& command) noexcept {
-  if (is_stop(command.verb)) c.state.stop_said = std::max(c.state.stop_said, command.request);
-  const bool is_overtaken = leads_to_motion(command.verb) && command.request < c.state.stop_said;
+[[nodiscard]] inline Refusal condition_of_turn(const Command& command,
+                                               std::uint64_t stop_said) noexcept {
+  const bool is_overtaken = leads_to_motion(command.verb) && command.request < stop_said;
   return is_overtaken ? Refusal::kOvertaken : Refusal::kNone;
 }
 
@@ -237,7 +239,8 @@ inline void go(Cycle& c, State next, const Command& command) noexcept {
   const Command& command = c.in.command;
   const VerbEffect effect = effect_of(c.state.state, command.verb);
   const bool is_asked = effect.effect == Effect::kGo || effect.effect == Effect::kSet;
-  Refusal refusal = condition_of_turn(c, command);
+  if (is_stop(command.verb)) c.state.stop_said = std::max(c.state.stop_said, command.request);
+  Refusal refusal = condition_of_turn(command, c.state.stop_said);
   if (refusal == Refusal::kNone) refusal = condition_of_kind(c, command);
   if (refusal == Refusal::kNone) refusal = is_asked ? take_up(c, command) : effect.refusal;
   if (refusal != Refusal::kNone) {

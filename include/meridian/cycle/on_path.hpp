@@ -47,9 +47,9 @@ inline constexpr double kRest_mm_per_s = 1e-6;
 }
 
 /// No motion: the joints stay where they are.
-inline void rest(Cycle& c) noexcept {
-  c.state.velocity = {};
-  c.state.on_path.ds = c.state.on_path.dds = c.state.on_path.ddds = 0;
+inline void rest(CycleState& state) noexcept {
+  state.velocity = {};
+  state.on_path.ds = state.on_path.dds = state.on_path.ddds = 0;
 }
 
 /// Reports which block ended and which began, if the piece in force belongs to another one.

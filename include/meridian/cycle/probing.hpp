@@ -73,7 +73,7 @@ inline void report_contact(const Cycle& c) noexcept {
     emit(c, EventCode::kContactJoint, joint, 1, c.state.probing.free_joints[joint]);
     emit(c, EventCode::kContactJoint, joint, 0, c.feedback[joint]);
   }
-  emit(c, EventCode::kContactFound, periods_of_contact(c), 0, c.state.stop.is_active ? 1 : 0);
+  emit(c, EventCode::kContactFound, periods_of_contact(c), 0, c.state.stop.is_active() ? 1 : 0);
 }
 
 /// Begins to seek contact, or not: the program that starts is a probing move, or is none.

@@ -48,11 +48,12 @@ struct BlockEndAhead {
   double tail_time = 0;             ///< plan time to it: nothing is known of what lies behind
 };
 
-/// Looks for the end of a block on the motion `piece`, which begins in `begin` s of plan time and
-/// is followed by `next`, no nearer than `min`.
-[[nodiscard]] inline bool find_end_on(Cycle& c, const TimePiece& piece, const TimePiece* next,
-                                      double begin, double min, BlockEndAhead& out) noexcept {
-  const PathPiece* path = c.reader.path_of(piece);
+/// Looks for the end of block `next_block` or a later one on the motion `piece`, which begins in
+/// `begin` s of plan time and is followed by `next`, no nearer than `min`.
+[[nodiscard]] inline bool find_end_on(MotionReader& reader, std::uint64_t next_block,
+                                      const TimePiece& piece, const TimePiece* next, double begin,
+                                      double min, BlockEndAhead& out) noexcept {
+  const PathPiece* path = reader.path_of(piece);
   if (path == nullptr) return false;
   const bool ends_path = next == nullptr || next->path_index != piece.path_index;
   const double rest = next == nullptr ? state_at(piece, piece.duration).s - kSameEnd_mm : 0;
@@ -61,7 +62,7 @@ struct BlockEndAhead {
     if (!ends_path && mark.s >= next->s0) return false;
     if (next == nullptr && mark.s > rest) return false;
     const std::uint64_t sequence = path->sequence + mark.ahead;
-    if (mark.s < piece.s0 || sequence < c.state.single_block.next_block) continue;
+    if (mark.s < piece.s0 || sequence < next_block) continue;
     const double time = time_at(piece, mark.s, 0.5 * piece.duration);
     if (begin + time < min) continue;
     out.is_found = true;
@@ -76,7 +77,7 @@ struct BlockEndAhead {
 
 /// The nearest end of a block that is at least `min` of plan time away and that the plan runs on
 /// through; what is farther than `max` does not matter. Only while a motion is in force.
-[[nodiscard, gnu::noinline]] inline BlockEndAhead find_block_end(Cycle& c, double min,
+[[nodiscard, gnu::noinline]] inline BlockEndAhead find_block_end(const Cycle& c, double min,
                                                                  double max) noexcept {
   BlockEndAhead out;
   MotionAhead ahead(c.reader);
@@ -93,7 +94,9 @@ struct BlockEndAhead {
     }
     const TimePiece* next = ahead.next();
     const double end = begin + piece->duration;
-    if (end >= min && find_end_on(c, *piece, next, begin, min, out)) return out;
+    if (end >= min &&
+        find_end_on(c.reader, c.state.single_block.next_block, *piece, next, begin, min, out))
+      return out;
     begin = end;
     piece = next;
     ++out.pieces;
@@ -104,7 +107,7 @@ struct BlockEndAhead {
 
 /// The rate at which the plan may leave its rest: no more than `wanted`, and one period of it and
 /// the way to rest are over where the first block ends, or what is known of the plan.
-[[nodiscard]] inline double rate_from_rest(Cycle& c, double wanted) noexcept {
+[[nodiscard]] inline double rate_from_rest(const Cycle& c, double wanted) noexcept {
   constexpr double kRounding = 1e-9;
   if (!c.state.single_block.is_on) return wanted;
   RateFilter full = c.state.rate;
@@ -121,7 +124,7 @@ struct BlockEndAhead {
 inline void begin_braking(Cycle& c, const BlockEndAhead& end) noexcept {
   SingleBlock& single = c.state.single_block;
   c.state.rate.aim(0);
-  single.is_braking = true;
+  single.phase = SingleBlock::Phase::kBraking;
   single.pieces = end.pieces;
   single.time = end.time;
   single.sequence = end.sequence;
@@ -162,8 +165,7 @@ inline void begin_braking(Cycle& c, const BlockEndAhead& end) noexcept {
 
 /// At rest at the end of block `sequence`: until the operator sends it on.
 inline void rest_behind_block(Cycle& c, std::uint64_t sequence, std::uint32_t line) noexcept {
-  c.state.single_block.is_braking = false;
-  c.state.single_block.is_behind = true;
+  c.state.single_block.phase = SingleBlock::Phase::kResting;
   c.state.single_block.next_block = sequence + 1;
   c.state.rate.reset(0);
   c.state.sequence = sequence;
@@ -203,7 +205,7 @@ inline void follow_braking_rate(Cycle& c) noexcept {
   while (single.pieces > 0 && (is_over || c.state.piece_time >= c.reader.piece()->duration)) {
     const double beyond = c.state.piece_time - c.reader.piece()->duration;
     if (!next_piece(c) || !is_on_move(c)) {
-      single.is_braking = false;
+      single.leave_brake();
       return;
     }
     c.state.piece_time = std::max(0.0, beyond);
@@ -212,7 +214,7 @@ inline void follow_braking_rate(Cycle& c) noexcept {
   if (single.pieces > 0) return;
   c.state.piece_time = is_over ? single.time : std::min(c.state.piece_time, single.time);
   if (is_over && single.is_on) return rest_behind_block(c, single.sequence, single.line);
-  single.is_braking = !is_over;
+  if (is_over) single.leave_brake();
 }
 
 /// After a rest in mid-motion: reports the block that begins, if its end is in sight.
@@ -236,7 +238,7 @@ inline void begin_next_block(Cycle& c) noexcept {
   const TimePiece* piece = c.reader.piece();
   const bool is_inside = is_on_move(c) && c.state.piece_time < piece->duration;
   if (!is_inside && !next_piece(c)) return false;
-  c.state.single_block.is_behind = false;
+  c.state.single_block.phase = SingleBlock::Phase::kRunning;
   if (is_inside) begin_next_block(c);
   return true;
 }

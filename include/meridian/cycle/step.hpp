@@ -21,27 +21,31 @@
 /// The cycle. Everything reached from step() is noexcept, bounded and free of allocation.
 namespace meridian {
 
+/// Whether the action peer answers the action that is waited for.
+[[nodiscard]] inline bool is_awaited(const CycleState& state, const ActionAnswer& answer) noexcept {
+  return answer.is_answered && state.action == ActionState::kWaiting &&
+         answer.sequence == state.sequence;
+}
+
 /// The answer of the action peer, wherever the machine is meanwhile.
 inline void take_action_answer(Cycle& c) noexcept {
-  const bool is_awaited = c.in.action.is_answered && c.state.action == ActionState::kWaiting &&
-                          c.in.action.sequence == c.state.sequence;
-  if (!is_awaited) return;
+  if (!is_awaited(c.state, c.in.action)) return;
   c.state.action = c.in.action.is_done ? ActionState::kDone : ActionState::kRefused;
   emit(c, EventCode::kActionAnswered, c.state.sequence, 0, c.in.action.is_done ? 1 : 0);
 }
 
 /// The drives went on with the last velocity for the periods that were lost: feedback of that
 /// setpoint is ahead of it by so much.
-inline void mark_bridged(Cycle& c) noexcept {
-  const std::uint64_t last = c.in.cycle - c.in.lost_periods - 1;
-  SentSetpoint& sent = c.state.sent[last % kSentCycles];
-  if (c.in.lost_periods > 0 && sent.cycle == last) sent.bridged = c.dt * c.in.lost_periods;
+inline void mark_bridged(const CycleInputs& in, double dt, CycleState& state) noexcept {
+  const std::uint64_t last = in.cycle - in.lost_periods - 1;
+  SentSetpoint& sent = state.sent[last % kSentCycles];
+  if (in.lost_periods > 0 && sent.cycle == last) sent.bridged = dt * in.lost_periods;
 }
 
 /// Drives are off: the setpoint is where they are.
 inline void follow_feedback(Cycle& c) noexcept {
   if (is_feedback_there(c)) take_over_feedback(c);
-  rest(c);
+  rest(c.state);
   c.previous = c.state.joints;
 }
 
@@ -53,7 +57,7 @@ inline void be_ready(Cycle& c) noexcept {
 
 inline void wait_for_drives_on(Cycle& c) noexcept {
   const std::uint32_t all = all_joints(c.machine);
-  rest(c);
+  rest(c.state);
   if ((c.drives.enabled_mask & all) == all) {
     be_ready(c);
   } else if (c.state.state_time > c.state.options.enable_timeout_s) {
@@ -62,7 +66,7 @@ inline void wait_for_drives_on(Cycle& c) noexcept {
 }
 
 inline void wait_for_drives_off(Cycle& c) noexcept {
-  rest(c);
+  rest(c.state);
   const bool is_off = (c.drives.enabled_mask & all_joints(c.machine)) == 0;
   if (is_off || c.state.state_time > c.state.options.disable_timeout_s) enter(c, State::kOff);
 }
@@ -76,9 +80,8 @@ inline void wait_for_drives_off(Cycle& c) noexcept {
 
 /// One cycle of drives that home themselves. False when that is over.
 [[nodiscard]] inline bool home(Cycle& c) noexcept {
-  bool is_stuck = false;
-  const bool goes_on = follow_homing(c, is_stuck);
-  if (!is_stuck) return goes_on;
+  const HomingStep step = follow_homing(c);
+  if (step != HomingStep::kStuck) return step == HomingStep::kGoesOn;
   const std::uint32_t busy = c.state.homing.busy;
   raise(c, Alarm::kHomingTimeout, first_bit(busy), c.state.homing.time);
   return true;
@@ -107,12 +110,12 @@ inline void come_to_rest_from_homing(Cycle& c) noexcept {
 
 /// One cycle of whatever stops. False if the path gave no joints.
 [[nodiscard]] inline bool come_to_rest(Cycle& c) noexcept {
-  if (c.state.jogging.is_active) {
+  if (c.state.jogging.is_active()) {
     const JogStep step = follow_braking(c);
     if (step == JogStep::kOver) arrive(c);
     return step != JogStep::kNoJoints;
   }
-  if (c.state.homing.is_active) {
+  if (c.state.homing.is_active()) {
     come_to_rest_from_homing(c);
     return true;
   }
@@ -138,7 +141,7 @@ inline void come_to_rest_from_homing(Cycle& c) noexcept {
       return true;
     case State::kReady:
     case State::kLoaded:
-      rest(c);
+      rest(c.state);
       if (c.reader.piece() != nullptr || c.reader.advance() != nullptr) enter(c, State::kLoaded);
       return true;
     case State::kApproaching:
@@ -147,7 +150,7 @@ inline void come_to_rest_from_homing(Cycle& c) noexcept {
       return follow_plan(c);
     case State::kHeld:
     case State::kStepping:
-      rest(c);
+      rest(c.state);
       return true;
     case State::kStarved:
       wait_for_blocks(c);
@@ -168,9 +171,9 @@ inline void come_to_rest_from_homing(Cycle& c) noexcept {
 /// The joints whose position means something: all that a program moves, else those with a
 /// reference; none where drives ran out by themselves and brake from there.
 [[nodiscard]] inline std::uint32_t joints_with_travel(const Cycle& c) noexcept {
-  if (c.state.stop.may_leave_travel) return 0;
+  if (c.state.stop.mode == StopMode::kOffPathFromDrives) return 0;
   const State state = c.state.state;
-  const bool has_hand = c.state.jogging.is_active || c.state.homing.is_active;
+  const bool has_hand = c.state.jogging.is_active() || c.state.homing.is_active();
   const bool is_program =
       is_on_path(state) && state != State::kFaultStop && state != State::kJogging && !has_hand;
   return is_program ? ~0U : c.drives.referenced_mask;
@@ -179,7 +182,7 @@ inline void come_to_rest_from_homing(Cycle& c) noexcept {
 /// Gauge line to tip of the tool that moves.
 [[nodiscard]] inline double tool_length_of(const Cycle& c) noexcept {
   const Jogging& jogging = c.state.jogging;
-  if (jogging.is_active && jogging.has_order) return jogging.order.tool_length_mm;
+  if (jogging.is_active() && jogging.has_order) return jogging.order.tool_length_mm;
   const PathPiece* const path = c.reader.path();
   return path != nullptr ? path->tool_length_mm : c.in.tool_length_mm;
 }
@@ -209,19 +212,19 @@ inline void guard(Cycle& c, bool has_joints, const JointVector& last_velocity) n
   c.state.joints = c.previous;
   raise(c, verdict.alarm, verdict.joint, verdict.value);
   c.state.jogging = {};
-  begin_stop_off_path(c, c.previous, last_velocity);
+  c.state.stop = stop_off_path(c.machine, c.previous, last_velocity);
   (void)follow_stop(c);
   verdict = check_setpoint(c, has_travel);
   if (verdict.alarm == Alarm::kNone) return;
   c.state.joints = c.previous;
-  rest(c);
-  begin_stop_off_path(c, c.previous, {});
+  rest(c.state);
+  c.state.stop = stop_off_path(c.machine, c.previous, {});
 }
 
 /// Rate of plan time in force: of a stop, its speed in shares of the planned one.
 [[nodiscard]] inline double rate_of(const CycleState& state) noexcept {
   const StopInProgress& stop = state.stop;
-  if (!stop.is_active || stop.is_by_rate) return state.rate.rate();
+  if (!stop.is_active() || is_along_plan(stop.mode)) return state.rate.rate();
   return stop.speed_begin > 0 ? stop.rate_begin * state.on_path.ds / stop.speed_begin : 0;
 }
 
@@ -310,7 +313,7 @@ inline void step(const MachineModel& machine, CycleState& state, MotionReader& r
   out.events_dropped = 0;
   state.state_time += dt * periods;
   reader.set_epoch(state.epoch);
-  mark_bridged(c);
+  mark_bridged(in, dt, state);
   take_action_answer(c);
   supervise(c);
   obey(c);

@@ -50,26 +50,27 @@ inline constexpr double kAlongPlan_s = 0.3;
 inline void lower_rate(Cycle& c, StopKind kind, double share) noexcept {
   if (kind == StopKind::kHold) return c.state.rate.aim(0);
   // The program is void: the first rest of the plan is the best, wherever blocks end.
-  c.state.single_block.is_braking = false;
+  c.state.single_block.leave_brake();
   c.state.rate.stop(fault_rate_bounds(c.machine, share));
   c.reader.keep_tail(*c.reader.piece());
 }
 
 /// Lays out the stop in progress with `authority`, from `begin` on the path in force.
-inline void lay_out_stop(Cycle& c, const PathState& begin, const StopMargin& authority) noexcept {
-  StopInProgress& stop = c.state.stop;
+inline void lay_out_stop(CycleState& state, const PathState& begin,
+                         const StopMargin& authority) noexcept {
+  StopInProgress& stop = state.stop;
   stop.law = StopLaw(begin, authority);
   stop.speed_begin = begin.ds;
   stop.stopping_time = stop.time + stop.law.duration();
   stop.stopping_distance += stop.law.distance();
   stop.time = 0;
-  stop.is_by_rate = false;
-  stop.begin = c.state.joints;
-  c.state.single_block.is_braking = false;
+  stop.change(StopEvent::kLaidOut);
+  stop.begin = state.joints;
+  state.single_block.leave_brake();
 }
 
 /// Path length to the end of the block that the rate brakes for.
-[[nodiscard]] inline double way_to_block_end(Cycle& c) noexcept {
+[[nodiscard]] inline double way_to_block_end(const Cycle& c) noexcept {
   const SingleBlock& single = c.state.single_block;
   MotionAhead ahead(c.reader);
   const TimePiece* piece = c.reader.piece();
@@ -87,9 +88,9 @@ inline void lay_out_stop(Cycle& c, const PathState& begin, const StopMargin& aut
 /// Whether a hold from `begin` with `authority` would end at the end of a block that the rate
 /// brakes for, which rounding may make behind it, or beyond: the brake is no longer way to rest
 /// then.
-[[nodiscard]] inline bool passes_block_end(Cycle& c, const PathState& begin,
+[[nodiscard]] inline bool passes_block_end(const Cycle& c, const PathState& begin,
                                            const StopMargin& authority) noexcept {
-  if (!c.state.single_block.is_braking || !(authority.jerk > 0)) return false;
+  if (!c.state.single_block.is_braking() || !(authority.jerk > 0)) return false;
   return StopLaw(begin, authority).distance() > way_to_block_end(c) - kSameEnd_mm;
 }
 
@@ -99,7 +100,7 @@ inline void lay_out_stop(Cycle& c, const PathState& begin, const StopMargin& aut
 /// end of its window's tail at the latest: of a hold, where kAlongPlan_s are over.
 inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
   StopInProgress& stop = c.state.stop;
-  const double rate = stop.is_active && stop.speed_begin > 0
+  const double rate = stop.is_active() && stop.speed_begin > 0
                           ? stop.rate_begin * c.state.on_path.ds / stop.speed_begin
                           : c.state.rate.rate();
   StopMargin authority;
@@ -112,16 +113,14 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
     authority = {authority.accel * share, authority.jerk * share};
     if (kind == StopKind::kHold && passes_block_end(c, begin, authority)) authority = {};
   }
-  const bool was_by_rate = stop.is_active && stop.is_by_rate;
+  const bool was_by_rate = is_along_plan(stop.mode);
   const bool has_authority = authority.jerk > 0 || !(begin.ds > 0);
-  if (!has_authority && stop.is_active && !was_by_rate && !stop.is_off_path && share == 1.0) return;
+  if (!has_authority && stop.mode == StopMode::kOnPath && share == 1.0) return;
   const StopInProgress before = stop;
   stop = {};
-  stop.is_active = true;
-  stop.is_fault = kind == StopKind::kFault;
   stop.rate_begin = rate;
-  if (has_authority) return lay_out_stop(c, begin, authority);
-  stop.is_by_rate = true;
+  if (has_authority) return lay_out_stop(c.state, begin, authority);
+  stop.change(kind == StopKind::kFault ? StopEvent::kFault : StopEvent::kHold);
   if (was_by_rate) {
     stop.time = before.time;
     stop.stopping_distance = before.stopping_distance;
@@ -154,29 +153,31 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
   return authority;
 }
 
-/// Begins a stop of every joint along its last velocity, all in the same time: the last resort
-/// where the path gives no setpoint that may be sent.
-inline void begin_stop_off_path(Cycle& c, const JointVector& joints,
-                                const JointVector& velocity) noexcept {
-  StopInProgress& stop = c.state.stop;
-  stop = {};
-  stop.is_active = stop.is_off_path = true;
+/// A stop of every joint along its last velocity, all in the same time: the last resort where the
+/// path gives no setpoint that may be sent.
+[[nodiscard]] inline StopInProgress stop_off_path(const MachineModel& machine,
+                                                  const JointVector& joints,
+                                                  const JointVector& velocity,
+                                                  StopEvent event = StopEvent::kPathLost) noexcept {
+  StopInProgress stop;
+  stop.change(event);
   stop.begin = joints;
   StopMargin authority{1e9, 1e12};
   bool is_moving = false;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
     const double speed = std::abs(velocity[i]);
     if (!(speed > 0) || !std::isfinite(speed)) continue;
-    const JointLimits& limits = c.machine.joints[i].limits;
+    const JointLimits& limits = machine.joints[i].limits;
     stop.direction[i] = velocity[i];
     authority.accel = std::min(authority.accel, limits.fault_acceleration / speed);
     authority.jerk = std::min(authority.jerk, limits.fault_jerk / speed);
     is_moving = true;
   }
-  if (is_moving && has_stage(c.machine)) {
-    authority = authority_beside_stage(c.machine, joints, stop.direction, authority);
+  if (is_moving && has_stage(machine)) {
+    authority = authority_beside_stage(machine, joints, stop.direction, authority);
   }
   stop.law = StopLaw({0, is_moving ? 1.0 : 0.0, 0, 0}, authority);
+  return stop;
 }
 
 /// Time from the begin to rest.
@@ -185,37 +186,37 @@ inline void begin_stop_off_path(Cycle& c, const JointVector& joints,
 }
 
 [[nodiscard]] inline bool is_stop_over(const StopInProgress& stop) noexcept {
-  return !stop.is_active || (!stop.is_by_rate && stop.time >= duration_of(stop));
+  return !stop.is_active() || (!is_along_plan(stop.mode) && stop.time >= duration_of(stop));
 }
 
 /// Adds what is left of the deviation from the path: 1 - 10x³ + 15x⁴ - 6x⁵ of it.
-inline void add_deviation(Cycle& c) noexcept {
-  const StopInProgress& stop = c.state.stop;
+inline void add_deviation(CycleState& state, int joint_count) noexcept {
+  const StopInProgress& stop = state.stop;
   if (stop.time >= stop.deviation_time) return;
   const double x = stop.time / stop.deviation_time;
   const double left = 1 - x * x * x * (10 - x * (15 - 6 * x));
   const double slope = -30 * x * x * (1 - x) * (1 - x) / stop.deviation_time;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
-    c.state.joints[i] += stop.deviation[i] * left;
-    c.state.velocity[i] += stop.deviation[i] * slope;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(joint_count); ++i) {
+    state.joints[i] += stop.deviation[i] * left;
+    state.velocity[i] += stop.deviation[i] * slope;
   }
 }
 
 /// Puts the joints where the stop off the path is at its time.
-inline void put_off_path(Cycle& c) noexcept {
-  const StopInProgress& stop = c.state.stop;
+inline void put_off_path(CycleState& state, int joint_count) noexcept {
+  const StopInProgress& stop = state.stop;
   const PathState p = stop.law.at(stop.time);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(c.machine.joint_count); ++i) {
-    c.state.joints[i] = stop.begin[i] + stop.direction[i] * p.s;
-    c.state.velocity[i] = stop.direction[i] * p.ds;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(joint_count); ++i) {
+    state.joints[i] = stop.begin[i] + stop.direction[i] * p.s;
+    state.velocity[i] = stop.direction[i] * p.ds;
   }
 }
 
 /// The path came to its end before the stop did (never by more than rounding, see StopLaw).
-inline void end_stop_here(Cycle& c) noexcept {
-  rest(c);
-  c.state.stop.law = StopLaw({c.state.on_path.s, 0, 0, 0}, {});
-  c.state.stop.begin = c.state.joints;
+inline void end_stop_here(CycleState& state) noexcept {
+  rest(state);
+  state.stop.law = StopLaw({state.on_path.s, 0, 0, 0}, {});
+  state.stop.begin = state.joints;
 }
 
 /// One period of a stop along the plan, no farther than to the end of a block that the rate brakes
@@ -225,7 +226,7 @@ inline void end_stop_here(Cycle& c) noexcept {
   c.state.piece_time += c.state.rate.advance(c.dt);
   for (int n = 0; n < kMaxPieces; ++n) {
     const TimePiece& piece = *c.reader.piece();
-    const bool is_last = single.is_braking && single.pieces == 0;
+    const bool is_last = single.is_braking() && single.pieces == 0;
     if (is_last) c.state.piece_time = std::min(c.state.piece_time, single.time);
     const double beyond = c.state.piece_time - piece.duration;
     if (is_last || beyond < 0) return c.state.rate.rate() > 0 || !c.state.rate.is_settled();
@@ -240,7 +241,7 @@ inline void end_stop_here(Cycle& c) noexcept {
 /// Whether a FaultStop's law with `authority` may begin here. Its rate falls faster than authority
 /// reckons with: the deceleration must be one that the law has anyway, on the way down from a speed
 /// that has the same authority.
-[[nodiscard]] inline bool is_reckoned_with(Cycle& c, const StopMargin& authority) noexcept {
+[[nodiscard]] inline bool is_reckoned_with(const Cycle& c, const StopMargin& authority) noexcept {
   const PathState& here = c.state.on_path;
   if (here.dds >= 0) return true;
   const TimePiece& piece = *c.reader.piece();
@@ -250,24 +251,32 @@ inline void end_stop_here(Cycle& c) noexcept {
   return same.accel == authority.accel && same.jerk == authority.jerk;
 }
 
+/// The authority of the law for which a stop along the plan may leave it here; none: not yet.
+[[nodiscard]] inline StopMargin authority_to_leave_plan(const Cycle& c) noexcept {
+  const StopInProgress& stop = c.state.stop;
+  const bool is_beside = stop.time < stop.deviation_time;
+  if (!is_on_move(c) || is_beside || !(c.state.on_path.ds > 0)) return {};
+  const bool is_fault = stop.mode == StopMode::kFaultAlongPlan;
+  const StopKind kind = is_fault ? StopKind::kFault : StopKind::kHold;
+  const StopMargin authority = authority_of(*c.reader.piece(), kind, c.state.on_path);
+  if (!(authority.jerk > 0)) return {};
+  if (is_fault && !is_reckoned_with(c, authority)) return {};
+  if (!is_fault && passes_block_end(c, c.state.on_path, authority)) return {};
+  return authority;
+}
+
 /// Leaves the plan for a law of its own where there is authority for one by now.
 inline void leave_plan(Cycle& c) noexcept {
-  StopInProgress& stop = c.state.stop;
-  const bool is_beside = stop.time < stop.deviation_time;
-  if (!is_on_move(c) || is_beside || !(c.state.on_path.ds > 0)) return;
-  const StopKind kind = stop.is_fault ? StopKind::kFault : StopKind::kHold;
-  const StopMargin authority = authority_of(*c.reader.piece(), kind, c.state.on_path);
+  const StopMargin authority = authority_to_leave_plan(c);
   if (!(authority.jerk > 0)) return;
-  if (stop.is_fault && !is_reckoned_with(c, authority)) return;
-  if (!stop.is_fault && passes_block_end(c, c.state.on_path, authority)) return;
-  stop.rate_begin = c.state.rate.rate();
-  lay_out_stop(c, c.state.on_path, authority);
+  c.state.stop.rate_begin = c.state.rate.rate();
+  lay_out_stop(c.state, c.state.on_path, authority);
 }
 
 /// Goes on with a stop along the plan by the periods of this cycle.
 [[nodiscard]] inline bool follow_stop_by_rate(Cycle& c) noexcept {
   StopInProgress& stop = c.state.stop;
-  const bool is_late = stop.time > kAlongPlan_s && !c.state.single_block.is_braking;
+  const bool is_late = stop.time > kAlongPlan_s && !c.state.single_block.is_braking();
   if (is_late && is_on_move(c)) c.reader.keep_tail(*c.reader.piece());
   bool goes_on = true;
   for (int n = 0; n < c.periods && goes_on; ++n) {
@@ -277,34 +286,33 @@ inline void leave_plan(Cycle& c) noexcept {
   if (is_on_move(c) && !put_at_plan_time(c)) return false;
   stop.stopping_distance += c.state.on_path.ds * c.elapsed;
   if (goes_on) {
-    add_deviation(c);
+    add_deviation(c.state, c.machine.joint_count);
     return true;
   }
-  rest(c);
+  rest(c.state);
   // The law has no duration: the stop is over, where nothing is left of a deviation.
-  stop.is_by_rate = false;
-  stop.is_off_path = true;
+  stop.change(StopEvent::kPlanRests);
   stop.begin = c.state.joints;
   stop.stopping_time = stop.time;
-  add_deviation(c);
+  add_deviation(c.state, c.machine.joint_count);
   return true;
 }
 
 /// Goes on with the stop by the periods of this cycle. False if the path cannot be evaluated.
 [[nodiscard]] inline bool follow_stop(Cycle& c) noexcept {
   StopInProgress& stop = c.state.stop;
-  if (stop.is_by_rate) leave_plan(c);
-  if (stop.is_by_rate) return follow_stop_by_rate(c);
+  if (is_along_plan(stop.mode)) leave_plan(c);
+  if (is_along_plan(stop.mode)) return follow_stop_by_rate(c);
   for (int n = 0; n < c.periods; ++n) stop.time += c.dt;  // as if none had been lost, bit for bit
-  if (stop.is_off_path) {
-    put_off_path(c);
-    add_deviation(c);
+  if (is_off_path(stop.mode)) {
+    put_off_path(c.state, c.machine.joint_count);
+    add_deviation(c.state, c.machine.joint_count);
     return true;
   }
   if (!is_on_move(c)) {
     c.state.joints = stop.begin;
-    rest(c);
-    add_deviation(c);
+    rest(c.state);
+    add_deviation(c.state, c.machine.joint_count);
     return true;
   }
   PathState p = stop.law.at(stop.time);
@@ -313,26 +321,26 @@ inline void leave_plan(Cycle& c) noexcept {
   c.state.on_path = p;
   if (!is_inside) {
     if (is_on_move(c)) return false;
-    end_stop_here(c);
-    add_deviation(c);
+    end_stop_here(c.state);
+    add_deviation(c.state, c.machine.joint_count);
     return true;
   }
   c.state.piece_time = time_at(*c.reader.piece(), p.s, c.state.piece_time + c.dt);
   if (!put_on_path(c, p.s, p.ds)) return false;
-  add_deviation(c);
+  add_deviation(c.state, c.machine.joint_count);
   return true;
 }
 
 /// At rest: the rate is zero, and plan time is the one of the place that was reached.
 inline void finish_stop(Cycle& c) noexcept {
   const StopInProgress& stop = c.state.stop;
-  rest(c);
+  rest(c.state);
   if (stop.stopping_time > 0) {
     emit(c, EventCode::kStopped, static_cast<std::uint64_t>(stop.stopping_time * 1e9), 0,
          stop.stopping_distance);
   }
   c.state.stop = {};
-  c.state.single_block.is_braking = false;
+  c.state.single_block.leave_brake();
   c.state.rate.reset(0);
 }
 

@@ -47,10 +47,10 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
   report_alarm(c, alarm, joint, value);
   if (c.state.state == State::kFaultStop) return;
   c.state.alarm = alarm;
-  if (c.state.jogging.is_active) {
-    brake_jogging(c, true);
-  } else if (c.state.homing.is_active) {
-    halt_homing(c);
+  if (c.state.jogging.is_active()) {
+    brake_jogging(c.state.jogging, true);
+  } else if (c.state.homing.is_active()) {
+    halt_homing(c.state.homing);
   } else {
     begin_stop(c, StopKind::kFault);
   }
@@ -105,14 +105,14 @@ inline void raise(Cycle& c, Alarm alarm, int joint = 0, double value = 0) noexce
   return c.drives.oldest_joint;
 }
 
-/// Counts the setpoints that were sent since the one that the drives took last, which keeps a stall
-/// of the host out of it; where that is none of ours, or too old to be known, it counts on.
-inline void count_unheard(Cycle& c) noexcept {
+/// How many setpoints were sent since the one that the drives took last, which keeps a stall of the
+/// host out of it; where that is none of ours, or too old to be known, one more than before.
+[[nodiscard]] inline std::uint64_t count_unheard(const Cycle& c) noexcept {
   const std::uint64_t seen = c.drives.cycle_seen;
   const SentSetpoint& sent = c.state.sent[seen % kSentCycles];
   const bool is_ours = sent.cycle == seen && seen != 0;
-  c.state.unheard = is_ours ? c.in.cycle - seen - (c.state.periods_lost - sent.periods_lost)
-                            : c.state.unheard + 1;
+  return is_ours ? c.in.cycle - seen - (c.state.periods_lost - sent.periods_lost)
+                 : c.state.unheard + 1;
 }
 
 /// For how long drives may report and take no setpoints, in periods beside the two times that are
@@ -150,7 +150,7 @@ inline constexpr int kHearingSlack = 4;
     case ProbeNews::kNone:
       return;
     case ProbeNews::kFound:
-      if (!c.state.stop.is_active) begin_stop(c, StopKind::kHold);
+      if (!c.state.stop.is_active()) begin_stop(c, StopKind::kHold);
       return enter(c, State::kAborting);
     case ProbeNews::kTouch:
       return raise(c, Alarm::kContact);
@@ -181,7 +181,7 @@ inline void check_drives(Cycle& c) noexcept {
   if ((f.referenced_mask & all) != all && is_in_program(c.state.state)) {
     raise(c, Alarm::kReferenceLost, first_bit(~f.referenced_mask & all));
   }
-  count_unheard(c);
+  c.state.unheard = count_unheard(c);
   if (is_unheard(c)) {
     raise(c, Alarm::kSetpointsUnheard, f.deafest_joint,
           c.dt * static_cast<double>(c.state.unheard));
@@ -279,7 +279,7 @@ inline void check_drives(Cycle& c) noexcept {
 inline void stop_from_drives(Cycle& c) noexcept {
   const JointVector position = joints_after_stall(c);
   raise(c, Alarm::kPeriodsLost, 0, static_cast<double>(c.in.lost_periods));
-  if (!is_on_move(c) || c.state.stop.is_off_path) return;
+  if (!is_on_move(c) || is_off_path(c.state.stop.mode)) return;
   const double ramp_time = ramp_time_of_drives(c);
   double passed = 0;
   PathState begin = c.state.on_path;
@@ -320,8 +320,7 @@ inline void stop_jogging_from_drives(Cycle& c) noexcept {
     const double lost = c.machine.joints[i].limits.fault_acceleration * ramp_time;
     left[i] = std::copysign(std::max(0.0, std::abs(velocity[i]) - lost), velocity[i]);
   }
-  begin_stop_off_path(c, c.state.joints, left);
-  c.state.stop.may_leave_travel = true;
+  c.state.stop = stop_off_path(c.machine, position, left, StopEvent::kDrivesWentOn);
   c.elapsed = c.dt;
   c.periods = 1;
 }
@@ -345,7 +344,7 @@ inline void supervise(Cycle& c) noexcept {
   if (!is_bridged) {
     if (!c.state.jogging.axis.is_at_rest()) {
       stop_jogging_from_drives(c);
-    } else if (c.state.on_path.ds > 0 || c.state.stop.is_active) {
+    } else if (c.state.on_path.ds > 0 || c.state.stop.is_active()) {
       stop_from_drives(c);
     }
     c.periods = 1;

@@ -105,7 +105,7 @@ bool run_to_brake(Stepped& run, int blocks, int cycles) {
     } else {
       run.run();
     }
-    braked = run.world.state.single_block.is_braking ? braked + 1 : 0;
+    braked = run.world.state.single_block.is_braking() ? braked + 1 : 0;
     if (blocks <= 0 && braked > cycles) return true;
   }
   return false;
@@ -155,8 +155,8 @@ TEST(SingleBlock, MayBeAbortedAndMayFaultWhileItBrakesForAnEndThatAnAbortNeverPa
     if (mishap != Mishap::kTooManyLost) {  // that one begins where the drives are
       test::expect_within_limits(run.world, first, !is_abort, is_abort ? worst : worst_fault);
     }
-    EXPECT_FALSE(run.world.state.single_block.is_braking);
-    EXPECT_FALSE(run.world.state.single_block.is_behind);
+    EXPECT_FALSE(run.world.state.single_block.is_braking());
+    EXPECT_FALSE(run.world.state.single_block.is_behind());
     EXPECT_TRUE(run.world.state.single_block.is_on) << "the operator said nothing else";
   }
   std::printf("%d stops; abort: worst v %.6f a %.6f j %.6f; FaultStop: v %.6f a %.6f j %.6f\n",
@@ -180,7 +180,7 @@ TEST(SingleBlock, BrakesToTheSamePlaceWherePeriodsAreLostWhileItBrakes) {
       const CycleRecord& record = run.world.records.back();
       same[record.sequence] = record.joints;
       run.command(Verb::kResume);
-    } else if (run.world.state.single_block.is_braking) {
+    } else if (run.world.state.single_block.is_braking()) {
       run.world.run(bridged);
       ++lost;
     } else {

@@ -112,7 +112,7 @@ TEST(SingleBlock, LeavesNoEndOutBehindAHold) {
         run_s = 0;
       } else if (state == State::kRunning && run_s >= hold_s) {
         const SingleBlock& single = run.world.state.single_block;
-        if (single.is_braking) braked = single.sequence;
+        if (single.is_braking()) braked = single.sequence;
         run.command(Verb::kHold);
         ++holds_tried;
         run_s = -1e9;

@@ -215,7 +215,7 @@ TEST_F(Homed, AFaultOfDrivesThatNeverStandEndsInTime) {
   run(kChangeMode_s - 0.1);
   EXPECT_EQ(hand.world.now(), State::kFaultStop);
   ASSERT_TRUE(run_until(State::kFault, 0.2));
-  EXPECT_FALSE(hand.world.state.homing.is_active);
+  EXPECT_FALSE(hand.world.state.homing.is_active());
 }
 
 TEST_F(Homed, FeedbackThatIsLostLeavesNumbersAndEndsInTime) {

@@ -87,7 +87,7 @@ TEST(Jogging, LetsGoAtOnceHoweverLateThatComesIn) {
   hand.age_s = 3;
   hand.order(0, 0);
   hand.world.run();
-  EXPECT_TRUE(hand.world.state.jogging.is_let_go);
+  EXPECT_TRUE(hand.world.state.jogging.is_let_go());
 }
 
 TEST(Jogging, AStallOfTheHostCountsAgainstTheDeadManAlsoWhereNothingMoved) {
@@ -201,7 +201,7 @@ TEST(Jogging, AbortBrakesAndVoidsEverythingThatWasAskedFor) {
     EXPECT_EQ(hand.world.now(), State::kAborting);
     ASSERT_TRUE(hand.world.run_until(State::kReady, 1));
     EXPECT_EQ(hand.world.state.epoch, 2);
-    EXPECT_FALSE(hand.world.state.jogging.is_active);
+    EXPECT_FALSE(hand.world.state.jogging.is_active());
   }
 }
 
@@ -274,7 +274,7 @@ TEST(Jogging, LostPeriodsThatDrivesBridgeCountAgainstTheDeadMan) {
   ASSERT_TRUE(hand.lay_on(0));
   hand.hold(0, 50, 0.5);
   for (int n = 0; n < 4; ++n) hand.world.run(29);
-  EXPECT_TRUE(hand.world.state.jogging.is_let_go || hand.world.now() == State::kReady);
+  EXPECT_TRUE(hand.world.state.jogging.is_let_go() || hand.world.now() == State::kReady);
 }
 
 TEST(Jogging, WithoutAReferenceIsSlowHasNoTravelAndIsAllThereIs) {

@@ -136,7 +136,7 @@ TEST(StageCycle, AStopBesideThePathKeepsTheDrivesFaultLimits) {
   CycleWorld& w = cut.world;
   Cycle c{w.machine, state,        w.reader, w.in,          w.out,       dt,
           1,         state.joints, dt,       w.in.feedback, state.joints};
-  begin_stop_off_path(c, state.joints, velocity);
+  state.stop = stop_off_path(w.machine, state.joints, velocity);
   ASSERT_FALSE(is_stop_over(state.stop));
   std::vector<LimitedVector> at;
   for (double t = 0; !is_stop_over(state.stop) && t < 2; t += dt) {

@@ -38,7 +38,7 @@ struct Braking : test::Program {
     plan.barrier(TimeKind::kEnd);
     world.command(Verb::kSingleBlock, 1);
     run(0);
-    while (!world.state.single_block.is_braking) world.run();
+    while (!world.state.single_block.is_braking()) world.run();
   }
   /// Held after so many cycles more, and sent on: whether it rests at the end all the same.
   [[nodiscard]] bool rests_there_behind_hold(int cycles) {
@@ -208,7 +208,7 @@ TEST(StepSingleBlock, RestsInATailThatItBrakesForWhateverIsPublishedMeanwhile) {
   p.plan.cut_with_tail({200, 0, 0}, kLimits, 1);
   p.world.command(Verb::kSingleBlock, 1);
   p.run(0);
-  while (!p.world.state.single_block.is_braking && p.world.now() != State::kReady) p.world.run();
+  while (!p.world.state.single_block.is_braking() && p.world.now() != State::kReady) p.world.run();
   ASSERT_FALSE(p.world.reader.piece()->is_tail);
   p.plan.continue_cut();
   ASSERT_TRUE(p.world.run_until(State::kStepping, kLong_s));
