@@ -30,8 +30,7 @@ void SmoothRun::name_block_at(std::int64_t number, double x) noexcept {
 }
 
 void SmoothRun::end_ahead_of_fault() noexcept {
-  is_held_ = false;
-  is_feed_finished_ = true;
+  supply_ = Supply::kEnded;
   note_ease(nullptr);
   // What is published may be run to its rests.
   std::int64_t least = 0;

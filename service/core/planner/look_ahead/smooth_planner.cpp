@@ -19,7 +19,7 @@ void SmoothPlanner::swap_tools(ToolTable& tools) noexcept { workspace_->plain.sw
 void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std::uint16_t epoch,
                           const SmoothSettings& settings) noexcept {
   Workspace& w = *workspace_;
-  if (w.is_running) w.end_run();  // no index comes twice
+  if (w.is_running()) w.end_run();  // no index comes twice
   w.plain.begin(at_rest, tool_length_mm, epoch, settings.retracts_first, settings.first_joints);
   w.settings = settings;
   if (w.is_smooth() && w.model.pole_policy == PolePolicy::kEase) {
@@ -28,17 +28,18 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
     w.plain.set_pole_tolerance(w.slack().axis_rad);
   }
   w.raise.begin(tool_length_mm);
-  w.is_refused = w.is_for_plain = w.has_factor = w.is_ending = false;
+  w.refusal.reset();
+  w.decided = Workspace::Decided::kNothing;
   w.window.begin(w.slack());
   w.looked_at = 0;
-  w.is_looking = has_branches(w.model);
+  w.intake = has_branches(w.model) ? Workspace::Intake::kLooking : Workspace::Intake::kOpen;
   w.pose = w.plain.junction().pose;
   w.joints = at_rest;
 }
 
 PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
-  if (w.is_refused) return w.refusal;
+  if (w.refusal) return *w.refusal;
   if (block.kind == BlockKind::kEnd) w.window.end();
   bool is_taken = false;
   if (w.is_looking_at(block)) {
@@ -49,11 +50,11 @@ PlanResult SmoothPlanner::plan(const ClBlock& block, MotionWriter& writer) noexc
     w.end_look(false);
   }
   const bool is_planned = plan_what_waits(writer);
-  if (w.is_refused) return w.refusal;
+  if (w.refusal) return *w.refusal;
   if (is_taken) return {};
   if (!is_planned) return {PlanStatus::kNoRoom, {}, 0, {}};
   const PlanResult result = plan_one(block, writer);
-  if (result.status == PlanStatus::kOk && !w.is_looking) w.window.keep(block);
+  if (result.status == PlanStatus::kOk && !w.is_looking()) w.window.keep(block);
   return result;
 }
 
@@ -80,46 +81,48 @@ void SmoothPlanner::look_no_further() noexcept {
 
 std::uint64_t SmoothPlanner::look() const noexcept {
   Workspace& w = *workspace_;
-  if (w.is_looking) return w.window.waiting() > 0 ? 1 : 0;
+  if (w.is_looking()) return w.window.waiting() > 0 ? 1 : 0;
   return w.awaits_ahead() ? 1 + w.window.questions() : 0;
 }
 
 void SmoothPlanner::finish() noexcept {
   Workspace& w = *workspace_;
-  if (!w.is_looking) look_no_further();
+  if (!w.is_looking()) look_no_further();
   w.window.end();
   w.end_look(false);
-  w.is_ending = true;
+  w.intake = Workspace::Intake::kEnding;
 }
 
 PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) noexcept {
   using Status = SmoothRun::Status;
   Workspace& w = *workspace_;
-  if (w.is_refused) return w.refusal;
+  if (w.refusal) return *w.refusal;
   // Decided once: what the answer depends on changes where the port was full meanwhile.
-  auto cut = w.is_for_plain ? std::nullopt : w.smoothable(block);
-  w.is_for_plain = !cut;
-  if (w.is_running) {
+  const bool is_undecided = w.decided == Workspace::Decided::kNothing;
+  auto cut = is_undecided ? w.smoothable(block) : std::nullopt;
+  w.decide(!cut);
+  if (w.is_running()) {
     const bool ends = !cut || !w.is_smooth();
     if (ends) w.run.finish();
     const Status status = w.publish(writer);
-    if (w.is_refused) return w.refusal;
+    if (w.refusal) return *w.refusal;
     if (status == Status::kNoRoom || (ends && status != Status::kDone) || w.awaits_ahead())
       return {PlanStatus::kNoRoom, {}, 0, {}};
     if (ends) {
       w.end_run();
       cut = w.smoothable(block);  // it may start a run of its own
-      w.is_for_plain = !cut;
+      w.decide(!cut);
     }
   }
   if (!cut) {
     if (w.awaits_ahead()) return {PlanStatus::kNoRoom, {}, 0, {}};
-    if (!w.has_factor && block.kind == BlockKind::kCut) {
+    if (w.decided != Workspace::Decided::kAtRestWithFactor && block.kind == BlockKind::kCut) {
       w.raise.rest();
       w.plain.set_feed_factor(w.raise.next(block.sequence, writer.feed_override(), 0).label);
     }
     const PlanResult result = w.plain.plan(block, writer);
-    w.is_for_plain = w.has_factor = result.status == PlanStatus::kNoRoom;
+    const bool waits = result.status == PlanStatus::kNoRoom;
+    w.decided = waits ? Workspace::Decided::kAtRestWithFactor : Workspace::Decided::kNothing;
     if (result.status == PlanStatus::kRefused) {
       w.refuse(result);
     } else if (result.status == PlanStatus::kOk) {
@@ -133,23 +136,23 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
     }
     return result;
   }
-  if (!w.is_running) w.begin_run(*cut);
+  if (!w.is_running()) w.begin_run(*cut);
   w.run.take(*cut);
   if (!w.is_smooth()) w.run.finish();
   w.pose = {to_vector(cut->tip_mm), to_vector(cut->axis)};
   (void)w.publish(writer);
-  return w.is_refused ? w.refusal : PlanResult{};
+  return w.refusal.value_or(PlanResult{});
 }
 
 PlanResult SmoothPlanner::advance(MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
-  if (w.is_looking) return {};
-  const bool is_planned = w.is_refused || plan_what_waits(writer);
-  if (is_planned && w.is_running) {
-    if (w.is_ending && !w.is_refused) w.run.finish();
+  if (w.is_looking()) return {};
+  const bool is_planned = w.refusal || plan_what_waits(writer);
+  if (is_planned && w.is_running()) {
+    if (w.intake == Workspace::Intake::kEnding && !w.refusal) w.run.finish();
     (void)w.publish(writer);
   }
-  return w.is_refused ? w.refusal : PlanResult{};
+  return w.refusal.value_or(PlanResult{});
 }
 
 bool SmoothPlanner::take_approach(Approach& out) noexcept {

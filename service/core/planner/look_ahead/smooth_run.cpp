@@ -49,7 +49,8 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
   const int free = redundant_joint(model_);
   follows_free_ = model_.unwind_policy == UnwindPolicy::kRetract && free >= 0 &&
                   !model_.joints[free].is_endless;
-  is_held_ = is_just_unwound_ = is_easing_ = is_band_finished_ = false;
+  ease_.reset();
+  is_band_finished_ = false;
   fault_ = {};
   faulty_block_ = {};
 }
@@ -63,7 +64,8 @@ void SmoothRun::begin_feed(int branch) noexcept {
   travel_.begin(start_.joints, start_.tool_length_mm);
   window_ = start_.window;
   open_.fill({});
-  has_window_ = is_feed_finished_ = false;
+  has_window_ = false;
+  supply_ = Supply::kFlowing;
 }
 
 void SmoothRun::go_on(const JointVector& joints, int turns, std::uint64_t path_index,
@@ -75,7 +77,7 @@ void SmoothRun::go_on(const JointVector& joints, int turns, std::uint64_t path_i
   start_.window = window;
   for (double& value : held_.free) value += by;
   begin_feed(held_.branch);
-  is_just_unwound_ = true;
+  supply_ = Supply::kUnwound;
 }
 
 bool SmoothRun::fits(int turns) const noexcept {
@@ -136,40 +138,45 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
       fail_on_span();
       continue;
     }
-    const bool is_at_unwinding = is_held_ && !is_just_unwound_;
-    if (is_feed_finished_ && feed_.is_done()) {
+    const bool is_at_unwinding = supply_ == Supply::kHeld;
+    if (is_feed_finished() && feed_.is_done()) {
       if (has_fault()) return Status::kFailed;
       return is_at_unwinding ? Status::kUnwind : Status::kDone;
     }
     if (is_at_unwinding) return Status::kNoRoom;  // every cell is there: windows go on coming
     if (!feed_.has_room()) return Status::kNeedsBlocks;
-    if (const JointSpan* span = is_held_ ? &held_ : next_span()) {
+    if (const JointSpan* span = supply_ == Supply::kUnwound ? &held_ : next_span()) {
       if (!(span->band.length > 0)) continue;
-      if (follows_free_ && !follow(*span)) {
-        if (is_just_unwound_) {
-          fail({PathFault::Kind::kTravel, unwind_at_.joint, unwind_at_.value}, span->band.sequence,
-               span->band.line);
-          return Status::kFailed;
-        }
-        held_ = *span;
-        is_held_ = is_feed_finished_ = true;
-        (void)feed_.finish();
-      } else {
-        note_ease(span);
-        push(*span, feed_override);
-        is_held_ = is_just_unwound_ = false;
-      }
+      if (!take_span(*span, feed_override)) return Status::kFailed;
     } else if (band_.has_failed() || corridor_.has_failed()) {
       fail_ahead();
       end_ahead_of_fault();
-    } else if (is_band_finished_ && !is_feed_finished_ && !corridor_.needs_ahead()) {
-      is_feed_finished_ = true;
+    } else if (is_band_finished_ && !is_feed_finished() && !corridor_.needs_ahead()) {
+      supply_ = Supply::kEnded;
       note_ease(nullptr);
       (void)feed_.finish();
     } else {
       return Status::kNeedsBlocks;
     }
   }
+}
+
+bool SmoothRun::take_span(const JointSpan& span, double feed_override) noexcept {
+  if (!follows_free_ || follow(span)) {
+    note_ease(&span);
+    push(span, feed_override);
+    if (supply_ == Supply::kUnwound) supply_ = Supply::kFlowing;
+    return true;
+  }
+  if (supply_ == Supply::kUnwound) {
+    fail({PathFault::Kind::kTravel, unwind_at_.joint, unwind_at_.value}, span.band.sequence,
+         span.band.line);
+    return false;
+  }
+  held_ = span;
+  supply_ = Supply::kHeld;
+  (void)feed_.finish();
+  return true;
 }
 
 void SmoothRun::push(const JointSpan& span, double feed_override) noexcept {
@@ -225,22 +232,21 @@ bool SmoothRun::follow(const JointSpan& span) noexcept {
 }
 
 void SmoothRun::note_ease(const JointSpan* span) noexcept {
-  if (span != nullptr && is_easing_) {  // as far as the begin of a span that is exact again
-    ease_.last_sequence = span->band.sequence;
-    ease_.last_line = span->band.line;
+  if (span != nullptr && ease_) {  // as far as the begin of a span that is exact again
+    ease_->last_sequence = span->band.sequence;
+    ease_->last_line = span->band.line;
   }
   const bool deviates = span != nullptr && span->axis_deviation_rad > 0;
-  if (is_easing_ && (!deviates || span->reason != ease_.reason)) {
-    is_easing_ = false;
-    eases_.push_over_oldest(ease_);
+  if (ease_ && (!deviates || span->reason != ease_->reason)) {
+    eases_.push_over_oldest(*ease_);
+    ease_.reset();
   }
   if (!deviates) return;
-  if (!is_easing_) {
-    ease_ = {span->band.sequence, span->band.sequence, span->band.line, span->band.line, 0,
-             span->reason};
+  const BandSpan& band = span->band;
+  if (!ease_) {
+    ease_ = PoleEase{band.sequence, band.sequence, band.line, band.line, 0, span->reason};
   }
-  ease_.deviation_rad = std::max(ease_.deviation_rad, span->axis_deviation_rad);
-  is_easing_ = true;
+  ease_->deviation_rad = std::max(ease_->deviation_rad, span->axis_deviation_rad);
 }
 
 const JointSpan* SmoothRun::next_span() noexcept {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/band_spline.hpp"
@@ -96,6 +97,14 @@ class SmoothRun : public WindingTrial {
   [[nodiscard]] const JointVector& joints() const noexcept { return span_joints_; }
 
  private:
+  /// Where the spans of the feed come from.
+  enum class Supply : std::uint8_t {
+    kFlowing,  ///< from the band, one after the other
+    kHeld,     ///< held_ waits for an unwinding: the feed ends ahead of it
+    kUnwound,  ///< held_ is next, and nothing was taken since the unwinding
+    kEnded     ///< no more come: the path ends, or a fault lies ahead
+  };
+
   /// A published window that may still end in its tail.
   struct OpenWindow {
     std::uint32_t window = 0;
@@ -103,6 +112,9 @@ class SmoothRun : public WindingTrial {
   };
 
   [[nodiscard]] Status prepare(double feed_override) noexcept;
+  /// Takes the next span that joints follow, or holds it for an unwinding. False: it leaves travel
+  /// behind one too, and fault() says so.
+  [[nodiscard]] bool take_span(const JointSpan& span, double feed_override) noexcept;
   /// Gives the next span to the feed, with the factors that hold for it.
   void push(const JointSpan& span, double feed_override) noexcept;
   /// The next span that joints follow, nullptr where there is none yet.
@@ -116,6 +128,10 @@ class SmoothRun : public WindingTrial {
   /// Follows the redundant joint over `span`, the next one. False: it would leave its travel, and
   /// unwind_at() names where; nothing is followed then.
   [[nodiscard]] bool follow(const JointSpan& span) noexcept;
+  /// Whether the feed was told its end.
+  [[nodiscard]] bool is_feed_finished() const noexcept {
+    return supply_ == Supply::kHeld || supply_ == Supply::kEnded;
+  }
   /// Starts the feed where the machine rests.
   void begin_feed(int branch) noexcept;
   /// Keeps account of stretches beside the pole; `span` nullptr: the path ends.
@@ -151,14 +167,12 @@ class SmoothRun : public WindingTrial {
   std::uint32_t window_ = 0;
   std::array<OpenWindow, 4> open_;
   bool has_window_ = false;  ///< feed_.window() waits for room
-  bool is_band_finished_ = false, is_feed_finished_ = false;
-  bool follows_free_ = false;     ///< the redundant joint has travel and may be turned back
-  bool is_held_ = false;          ///< held_ waits for an unwinding
-  bool is_just_unwound_ = false;  ///< nothing was taken since
+  bool is_band_finished_ = false;
+  bool follows_free_ = false;  ///< the redundant joint has travel and may be turned back
+  Supply supply_ = Supply::kFlowing;
   JointSpan held_;
   BlockReject unwind_at_;
-  PoleEase ease_;  ///< going on where is_easing_
-  bool is_easing_ = false;
+  std::optional<PoleEase> ease_;  ///< going on
   IndexRing<PoleEase> eases_;
   PathFault fault_;
   BlockReject faulty_block_;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/kinematics/solve_driven.hpp"
 #include "service/core/planner/look_ahead/smooth_workspace.hpp"
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/geometry/unit_vector.hpp"
+#include "meridian/kinematics/solve_driven.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "service/core/planner/look_ahead/fault_code.hpp"
 #include "service/core/planner/singular/robot_pass.hpp"
@@ -60,13 +60,13 @@ std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const
   const bool starts_on_pole = is_on_pole(pose.axis);
   const bool may_linger = model.pole_policy == PolePolicy::kEase;
   if (axis == pose.axis) {
-    const bool may_go_on = !starts_on_pole || !is_running || is_run_on_pole || may_linger;
+    const bool may_go_on = !starts_on_pole || running != Running::kThrough || may_linger;
     return may_go_on ? std::optional(block) : std::nullopt;
   }
   if (!find_great_circle(pose.axis, axis).is_unique) return {};
-  if (is_running && is_run_on_pole) return {};
+  if (running == Running::kOnPole) return {};
   const bool stays_close = pole_distance(model, axis) < kLingerShare * tolerance().axis_rad;
-  if (starts_on_pole && !is_running && !(may_linger && stays_close)) return {};
+  if (starts_on_pole && !is_running() && !(may_linger && stays_close)) return {};
   return block;
 }
 
@@ -116,11 +116,11 @@ void SmoothPlanner::Workspace::begin_run(const ClBlock& cut) noexcept {
   start.path_index = at.path_index;
   start.window = at.window;
   start.branch = find_branch(at);
-  start.is_on_pole = is_run_on_pole = is_on_pole(pose.axis) && to_vector(cut.axis) == pose.axis;
+  start.is_on_pole = is_on_pole(pose.axis) && to_vector(cut.axis) == pose.axis;
   BandTolerance path = tolerance();
   if (!is_smooth()) path.axis_rad = kMinAxisTolerance_rad;  // of long turns; the tip is exact
   run.begin(start, path, pole_tolerance_rad());
-  is_running = true;
+  running = start.is_on_pole ? Running::kOnPole : Running::kThrough;
 }
 
 void SmoothPlanner::Workspace::end_run() noexcept {
@@ -139,17 +139,17 @@ void SmoothPlanner::Workspace::end_run() noexcept {
   at.path_index = run.next_path_index();
   at.window = run.next_window();
   plain.continue_at(at);
-  is_running = false;
+  running = Running::kNone;
 }
 
 SmoothRun::Status SmoothPlanner::Workspace::publish(MotionWriter& writer) noexcept {
   for (;;) {
     const SmoothRun::Status status = run.publish(writer);
     if (status == SmoothRun::Status::kUnwind) {
-      if (!is_refused && unwind(writer)) continue;
-      return is_refused ? SmoothRun::Status::kFailed : SmoothRun::Status::kNoRoom;
+      if (!refusal && unwind(writer)) continue;
+      return refusal ? SmoothRun::Status::kFailed : SmoothRun::Status::kNoRoom;
     }
-    if (run.has_fault() && !is_refused) {
+    if (run.has_fault() && !refusal) {
       BlockReject reject = run.faulty_block();
       reject.code = code_of(run.fault().kind);
       refuse({PlanStatus::kRefused, reject, 0, {}});

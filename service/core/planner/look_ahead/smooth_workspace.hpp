@@ -30,6 +30,25 @@ struct SmoothPlanner::Workspace {
   static constexpr std::size_t kUnwindings = 256;  ///< that wait to be taken; the oldest go
   static constexpr std::size_t kEases = 256;       ///< the same
 
+  /// Which blocks come.
+  enum class Intake : std::uint8_t {
+    kLooking,  ///< more of the program's begin may come, before anything is planned
+    kOpen,     ///< what comes is planned
+    kEnding    ///< no block comes any more
+  };
+  /// The run through blocks that is going on.
+  enum class Running : std::uint8_t {
+    kNone,
+    kThrough,
+    kOnPole  ///< it stays on the pole all the way
+  };
+  /// What was decided for the block that waits for room.
+  enum class Decided : std::uint8_t {
+    kNothing,
+    kAtRest,           ///< it goes from rest to rest
+    kAtRestWithFactor  ///< and has been given the factor of its feed
+  };
+
   Workspace(const MachineModel& m, ToolTable t)
       : model(m),
         plain(m, std::move(t)),
@@ -77,29 +96,32 @@ struct SmoothPlanner::Workspace {
   void note(const Unwinding& unwinding) noexcept;
   /// The program begins with what waits; `is_late`: because no more came for too long.
   void end_look(bool is_late) noexcept {
-    if (!is_looking) return;
+    if (!is_looking()) return;
     looked_at = window.waiting();
     if (looked_at > 0) raise.note_look({.looked_at = looked_at, .is_late = is_late});
-    is_looking = false;
+    intake = Intake::kOpen;
   }
   /// What is planned waits for blocks behind it: they tell which way past the pole carries.
   [[nodiscard]] bool awaits_ahead() noexcept {
-    return (is_running ? run.needs_ahead() : plain.needs_ahead()) && window.is_missing();
+    return (is_running() ? run.needs_ahead() : plain.needs_ahead()) && window.is_missing();
   }
   /// Whether `block` is wanted for a look, and not planned at once.
   [[nodiscard]] bool is_looking_at(const ClBlock& block) noexcept {
-    if (is_looking) return window.waiting() > 0 || is_motion(block.kind);
+    if (is_looking()) return window.waiting() > 0 || is_motion(block.kind);
     return awaits_ahead();
   }
   /// Whether the look goes on with what comes.
   [[nodiscard]] bool wants_more() noexcept {
-    if (!is_looking) return awaits_ahead();
+    if (!is_looking()) return awaits_ahead();
     return window.waiting() != (replayed_look > 0 ? replayed_look : kLookAhead);
   }
-  void refuse(const PlanResult& why) noexcept {
-    is_refused = true;
-    refusal = why;
+  void refuse(const PlanResult& why) noexcept { refusal = why; }
+  void decide(bool is_at_rest) noexcept {
+    if (!is_at_rest) decided = Decided::kNothing;
+    if (is_at_rest && decided == Decided::kNothing) decided = Decided::kAtRest;
   }
+  [[nodiscard]] bool is_looking() const noexcept { return intake == Intake::kLooking; }
+  [[nodiscard]] bool is_running() const noexcept { return running != Running::kNone; }
 
   const MachineModel& model;
   RestToRestPlanner plain;
@@ -109,16 +131,12 @@ struct SmoothPlanner::Workspace {
   SmoothSettings settings;
   ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};  ///< end of the last block taken
   JointVector joints{};
-  bool is_running = false;
-  bool is_for_plain = false;  ///< the block that waits for room goes from rest to rest
-  bool has_factor = false;    ///< and has been given the factor of its feed
-  bool is_run_on_pole = false;
-  bool is_refused = false;
-  bool is_ending = false;  ///< no block comes any more
-  PlanResult refusal;
-  IndexRing<PoleEase> plain_eases;  ///< of blocks from rest to rest
+  Intake intake = Intake::kOpen;
+  Running running = Running::kNone;
+  Decided decided = Decided::kNothing;
+  std::optional<PlanResult> refusal;  ///< the program cannot go on
+  IndexRing<PoleEase> plain_eases;    ///< of blocks from rest to rest
   IndexRing<Unwinding> unwindings;
-  bool is_looking = false;          ///< more of the program's begin may come
   std::size_t looked_at = 0;        ///< blocks of the begin
   std::uint64_t replayed_look = 0;  ///< blocks that a run before was begun with; 0: none was
 };
