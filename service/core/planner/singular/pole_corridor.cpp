@@ -44,11 +44,11 @@ void PoleCorridor::begin(const Start& start) noexcept {
   stretches_.begin(tolerance_rad_);
   emitted_x_ = known_u_ = 0;
   known_ = start.joints;
-  branch_ = out_branch_ = start.branch;
+  course_ = out_course_ = {start.branch, false, 0};
   pending_.clear();
   cut_count_ = 0;
-  is_finished_ = is_held_ = is_out_held_ = has_failed_ = needs_ahead_ = false;
-  held_rate_ = out_held_rate_ = 0;
+  is_finished_ = false;
+  search_ = Search::kGoesOn;
   asked_u_ = -1;
 }
 
@@ -87,7 +87,7 @@ JointVector PoleCorridor::follow_to(double u) const noexcept {
       const double next = std::min(u, at + step);
       const BandSpan& there = probes_.span_at(next);
       const auto pose = pose_on(there.c, std::clamp(next - there.u0, 0.0, there.length));
-      const auto solved = solve(model_, tool_length_mm_, pose, branch_, joints);
+      const auto solved = solve(model_, tool_length_mm_, pose, course_.branch, joints);
       const bool is_there = solved.status != SolveStatus::kUnreachable;
       const bool is_turn =
           is_there && free >= 0 && std::abs(solved.q[free] - joints[free]) > kMaxFollowed_rad;
@@ -105,16 +105,16 @@ SettledPath PoleCorridor::settled() const noexcept {
   SettledPath out;
   out.end = has_zone ? std::max(emitted_u(), pending_.back().end) : emitted_u();
   out.is_begun = pending_.end_index() > 0 || emitted_u() > 0;
-  out.is_held = is_held_;
+  out.is_held = course_.is_held;
   out.is_whole = is_finished_;
-  out.branch = branch_;
+  out.branch = course_.branch;
   return out;
 }
 
 void PoleCorridor::scan() noexcept {
-  needs_ahead_ = false;
+  if (search_ == Search::kNeedsAhead) search_ = Search::kGoesOn;
   if (probes_.is_empty()) return;
-  while (!has_failed_ && stretches_.find_next(settled())) {
+  while (!has_failed() && stretches_.find_next(settled())) {
     // Not before a span waits for it: searches are dear, and so no two come at once.
     if (may_emit() && !probes_.is_full()) return;
     PoleStretch stretch;
@@ -124,7 +124,7 @@ void PoleCorridor::scan() noexcept {
     if (answer != PoleStretches::Answer::kFound) continue;
     if (stretch.has_room && !foresee(stretch.place)) {
       stretches_.go_back_to(before);
-      needs_ahead_ = true;
+      search_ = Search::kNeedsAhead;
       return;
     }
     settle(stretch);
@@ -152,7 +152,7 @@ std::span<const PoleZone> PoleCorridor::find_string(PoleStretch& stretch) noexce
 void PoleCorridor::settle(PoleStretch& stretch) noexcept {
   PolePlace& place = stretch.place;
   lead_to(place);
-  place.rate = held_rate_;
+  place.rate = course_.rate;
   place.is_on_pole = is_on_pole(stretch);
   const auto waiting = static_cast<std::size_t>(pending_.end_index() - pending_.begin_index());
   bool is_exact_best = false;
@@ -165,7 +165,7 @@ void PoleCorridor::settle(PoleStretch& stretch) noexcept {
   const bool leads_exactly =
       !place.is_on_pole && (place.at_begin == PoleJoin::kExact || !is_off_exact(place));
   if (!is_exact_best && !leads_exactly) {
-    has_failed_ = true;
+    search_ = Search::kFailed;
     return;
   }
   for (PoleProbes::Place n = stretch.first; n <= stretch.last; ++n) {
@@ -191,16 +191,14 @@ bool PoleCorridor::is_on_pole(const PoleStretch& stretch) const noexcept {
 }
 
 void PoleCorridor::know_behind(const PoleZone& piece) noexcept {
-  branch_ = piece.branch_after;
+  course_ = {piece.branch_after, piece.is_held, held_rate_of(piece)};
   known_u_ = piece.end;
-  is_held_ = piece.is_held;
-  held_rate_ = held_rate_of(piece);
   JointVector reference{};
   if (const int free = redundant_joint(model_); free >= 0) reference[free] = piece.free.back();
   const BandSpan& span = probes_.span_at(piece.end);
   const auto pose = pose_on(span.c, std::clamp(piece.end - span.u0, 0.0, span.length));
-  known_ = is_held_ ? solve_held(model_, tool_length_mm_, pose, piece.free.back()).q
-                    : solve(model_, tool_length_mm_, pose, branch_, reference).q;
+  known_ = course_.is_held ? solve_held(model_, tool_length_mm_, pose, piece.free.back()).q
+                           : solve(model_, tool_length_mm_, pose, course_.branch, reference).q;
 }
 
 bool PoleCorridor::is_in_zone() const noexcept {
@@ -242,9 +240,7 @@ void PoleCorridor::wind(double by, const JointVector& joints) noexcept {
   asked_u_ = -1;
   stretches_.begin_again();
   if (kept > pending_.begin_index()) return know_behind(pending_.back());
-  branch_ = out_branch_;
-  is_held_ = is_out_held_;
-  held_rate_ = out_held_rate_;
+  course_ = out_course_;
   known_ = joints;
   if (!probes_.is_empty()) known_u_ = emitted_u();
 }
@@ -286,7 +282,7 @@ void PoleCorridor::emit() noexcept {
   const bool is_whole = is_rest && emitted_x_ == 0;
   out_ = {};
   out_.band = is_whole ? span : part_of_span(span, emitted_x_, length);
-  out_.branch = out_branch_;
+  out_.branch = out_course_.branch;
   const double middle = begin + 0.5 * length;
   if (has_zone && middle > zone.begin && middle < zone.end) {
     const double h = zone.end - zone.begin;
@@ -299,9 +295,7 @@ void PoleCorridor::emit() noexcept {
                                                        : EaseReason::kBeside;
   }
   if (has_zone && end >= zone.end) {
-    out_branch_ = zone.branch_after;
-    is_out_held_ = zone.is_held;
-    out_held_rate_ = held_rate_of(zone);
+    out_course_ = {zone.branch_after, zone.is_held, held_rate_of(zone)};
     pending_.drop_before(pending_.begin_index() + 1);
   }
   if (has_pole_ && end > known_u_) {
@@ -317,7 +311,7 @@ void PoleCorridor::emit() noexcept {
 
 const JointSpan* PoleCorridor::next() noexcept {
   if (has_pole_) scan();
-  if (has_failed_ || needs_ahead_ || probes_.is_empty() || !may_emit()) return nullptr;
+  if (search_ != Search::kGoesOn || probes_.is_empty() || !may_emit()) return nullptr;
   emit();
   return &out_;
 }

@@ -56,11 +56,11 @@ class PoleCorridor {
   /// Returns the next span, nullptr where more are needed; valid until the next call.
   [[nodiscard]] const JointSpan* next() noexcept;
   /// Whether next() returned nullptr because the foresight waits for blocks: no span is needed.
-  [[nodiscard]] bool needs_ahead() const noexcept { return needs_ahead_; }
+  [[nodiscard]] bool needs_ahead() const noexcept { return search_ == Search::kNeedsAhead; }
 
   /// Whether no way on was found from where the redundant joint rests. What was handed out stays
   /// valid, nothing comes behind it.
-  [[nodiscard]] bool has_failed() const noexcept { return has_failed_; }
+  [[nodiscard]] bool has_failed() const noexcept { return search_ == Search::kFailed; }
   /// The first span that is not handed out, or not all of it; nullptr: there is none.
   [[nodiscard]] const BandSpan* first_held() const noexcept {
     return probes_.is_empty() ? nullptr : &probes_.front();
@@ -76,6 +76,19 @@ class PoleCorridor {
   [[nodiscard]] bool fits_zone(double by) const noexcept;
 
  private:
+  /// What the search for stretches has come to.
+  enum class Search : std::uint8_t {
+    kGoesOn,
+    kNeedsAhead,  ///< the foresight waits for blocks
+    kFailed       ///< there is no way on from where the redundant joint rests
+  };
+  /// How the joints go on behind zones.
+  struct Course {
+    int branch = 0;
+    bool is_held = false;  ///< the redundant joint is not exact, and goes by
+    double rate = 0;       ///< this by u
+  };
+
   static constexpr std::size_t kCuts = 1024;
   static constexpr std::size_t kPending = 1024;
 
@@ -119,19 +132,14 @@ class PoleCorridor {
   double emitted_x_ = 0;  ///< of the first span held, what is out already
   double known_u_ = 0;    ///< winding and branch behind all zones are known there
   JointVector known_{};
-  int branch_ = 0;      ///< behind all zones
-  int out_branch_ = 0;  ///< where spans are handed out
+  Course course_;      ///< behind all zones
+  Course out_course_;  ///< where spans are handed out
   IndexRing<PoleZone> pending_;
   std::array<double, kCuts> cuts_{};  ///< ascending
   std::size_t cut_count_ = 0;
   bool is_finished_ = false;
-  bool is_held_ = false;  ///< behind all stretches the redundant joint is not exact, and goes by
-  double held_rate_ = 0;  ///< this by u
-  bool is_out_held_ = false;  ///< the same where spans are handed out
-  double out_held_rate_ = 0;
-  bool has_failed_ = false;
+  Search search_ = Search::kGoesOn;
   double asked_u_ = -1;  ///< from where the foresight was asked
-  bool needs_ahead_ = false;
   JointSpan out_;
 };
 
