@@ -64,12 +64,16 @@ struct RestToRestPlanner::Workspace {
   bool retracts_first = false;
   std::optional<JointVector> first_joints;
   double on_pole_rad = kPoleEase_rad;  ///< what begin() or set_pole_tolerance() said
-  bool is_staged = false;
-  bool is_refused = false;
-  bool needs_ahead = false;  ///< nothing is staged: the foresight waits for blocks
+  enum class Stage : std::uint8_t {
+    kNothing,
+    kWhole,      ///< all of a block is staged
+    kRefused,    ///< the program cannot go on
+    kNeedsAhead  ///< nothing is staged: the foresight waits for blocks
+  };
+  Stage stage_state = Stage::kNothing;
 
   void refuse(const BlockReject& reject) noexcept {
-    is_refused = true;
+    stage_state = Stage::kRefused;
     result = {PlanStatus::kRefused, reject, 0, {}};
   }
   void refuse(const ClBlock& block, RejectCode code, int joint, double value) noexcept {
@@ -81,7 +85,7 @@ struct RestToRestPlanner::Workspace {
     staging.clear(cursor.path_index);
     next = cursor;
     result = {};
-    needs_ahead = false;
+    if (stage_state == Stage::kNeedsAhead) stage_state = Stage::kNothing;
   }
   /// Stages the whole of `block` behind `cursor`, or refuses it.
   void stage(const ClBlock& block) noexcept;
@@ -105,7 +109,11 @@ struct RestToRestPlanner::Workspace {
   /// All of what is staged is there.
   void finish_staging() noexcept {
     next.path_index = cursor.path_index + static_cast<std::uint64_t>(staging.path_count);
-    is_staged = true;
+    stage_state = Stage::kWhole;
+  }
+  /// What was staged is published, or void.
+  void leave_stage() noexcept {
+    if (stage_state == Stage::kWhole) stage_state = Stage::kNothing;
   }
 };
 
@@ -143,22 +151,22 @@ void RestToRestPlanner::Workspace::stage(const ClBlock& block) noexcept {
   if (!is_finite(block)) return refuse(block, RejectCode::kNotFinite, -1, 0);
   if (is_motion(block.kind)) {
     stage_motion(block);
-    if (is_refused && on_pole_rad > kPoleEase_rad) stage_as_programmed(block);
+    if (stage_state == Stage::kRefused && on_pole_rad > kPoleEase_rad) stage_as_programmed(block);
   } else {
     stage_barrier(block);
   }
-  if (!is_refused && !needs_ahead) finish_staging();
+  if (stage_state == Stage::kNothing) finish_staging();
 }
 
 void RestToRestPlanner::Workspace::stage_as_programmed(const ClBlock& block) noexcept {
   const PlanResult refusal = result;
   clear_stage();
-  is_refused = false;
+  stage_state = Stage::kNothing;
   staged_approach = std::nullopt;
   router.set_pole_tolerance(kPoleEase_rad);
   stage_motion(block);
   router.set_pole_tolerance(on_pole_rad);
-  if (is_refused) result = refusal;
+  if (stage_state == Stage::kRefused) result = refusal;
 }
 
 void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
@@ -197,8 +205,10 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
       count_window(before.times);
     }
     result.axis_deviation_rad = std::max(result.axis_deviation_rad, router.axis_deviation_rad());
-    needs_ahead = router.needs_ahead();
-    if (needs_ahead) return;
+    if (router.needs_ahead()) {
+      stage_state = Stage::kNeedsAhead;
+      return;
+    }
   }
   if (fault.kind == PathFault::Kind::kNone) return mark_end(block);
   RejectCode code = code_of(fault.kind);
@@ -226,7 +236,7 @@ void RestToRestPlanner::Workspace::stage_retraction(const ClBlock& block) noexce
 
 void RestToRestPlanner::Workspace::stage_barrier(const ClBlock& block) noexcept {
   stage_retraction(block);
-  if (is_refused) return;
+  if (stage_state == Stage::kRefused) return;
   TimePiece piece;
   piece.kind = barrier_of(block.kind);
   piece.is_from_rest = true;
@@ -274,8 +284,7 @@ void RestToRestPlanner::begin(const JointVector& at_rest, double tool_length_mm,
   w.cursor.epoch = epoch;
   w.cursor.pose = forward(w.model, tool_length_mm, at_rest);
   w.staged_approach = w.approach = std::nullopt;
-  w.is_staged = false;
-  w.is_refused = w.needs_ahead = false;
+  w.stage_state = Workspace::Stage::kNothing;
   w.router.set_feed_factor(1);
   w.router.set_free_cone(0);
   set_pole_tolerance(0);
@@ -285,7 +294,9 @@ void RestToRestPlanner::ask(PoleLookAhead* foresight) noexcept {
   workspace_->router.ask(foresight);
 }
 
-bool RestToRestPlanner::needs_ahead() const noexcept { return workspace_->needs_ahead; }
+bool RestToRestPlanner::needs_ahead() const noexcept {
+  return workspace_->stage_state == Workspace::Stage::kNeedsAhead;
+}
 
 void RestToRestPlanner::set_free_cone(double rad) noexcept {
   workspace_->router.set_free_cone(rad);
@@ -303,10 +314,10 @@ void RestToRestPlanner::set_feed_factor(double factor) noexcept {
 
 PlanResult RestToRestPlanner::plan(const ClBlock& block, MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
-  if (w.is_refused) return w.result;
-  if (!w.is_staged) w.stage(block);
-  if (w.needs_ahead) return {PlanStatus::kNoRoom, {}, 0, {}};
-  return w.is_refused ? w.result : publish(writer);
+  if (w.stage_state == Workspace::Stage::kRefused) return w.result;
+  if (w.stage_state != Workspace::Stage::kWhole) w.stage(block);
+  if (needs_ahead()) return {PlanStatus::kNoRoom, {}, 0, {}};
+  return w.stage_state == Workspace::Stage::kRefused ? w.result : publish(writer);
 }
 
 bool RestToRestPlanner::take_approach(Approach& out) noexcept {
@@ -324,8 +335,8 @@ void RestToRestPlanner::look_at(std::span<const ClBlock> ahead, double tip_slack
 PlanResult RestToRestPlanner::unwind(const ClBlock& block, double beyond, const WindingTrial& trial,
                                      MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
-  if (w.is_refused) return w.result;
-  if (!w.is_staged) {
+  if (w.stage_state == Workspace::Stage::kRefused) return w.result;
+  if (w.stage_state != Workspace::Stage::kWhole) {
     w.staging.clear(w.cursor.path_index);
     w.next = w.cursor;
     w.result = {};
@@ -357,7 +368,7 @@ PlanResult RestToRestPlanner::publish(MotionWriter& writer) noexcept {
   writer.publish();
   if (w.staged_approach) w.approach = std::exchange(w.staged_approach, std::nullopt);
   w.cursor = w.next;
-  w.is_staged = false;
+  w.leave_stage();
   return w.result;
 }
 
@@ -370,7 +381,7 @@ void RestToRestPlanner::continue_at(const Junction& junction) noexcept {
   Workspace& w = *workspace_;
   w.cursor = {junction.pose,       junction.joints, junction.tool_length_mm, junction.is_first,
               junction.path_index, junction.window, junction.epoch};
-  w.is_staged = false;
+  w.leave_stage();
 }
 
 const JointVector& RestToRestPlanner::joints() const noexcept { return workspace_->cursor.joints; }
