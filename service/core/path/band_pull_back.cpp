@@ -63,11 +63,16 @@ void BandSmoother::verify(const BandPolyline& line, const BandKnots& knots, Cont
       out.is_reset = true;
       std::fill_n(weight_.begin(), size_, 1.0);
     }
-    for (std::int64_t s = s0_; s < s1_; ++s) {
-      for (std::int64_t i = std::max(s - 4, first_); i <= std::min(s, end_ - 1); ++i) {
-        if (weight_[static_cast<std::size_t>(i - first_)] > 0) {
-          is_open_[static_cast<std::size_t>(s - s0_)] = 1;
-        }
+    open_pulled();
+  }
+}
+
+/// Spans of points that were pulled are to be verified anew.
+void BandSmoother::open_pulled() noexcept {
+  for (std::int64_t s = s0_; s < s1_; ++s) {
+    for (std::int64_t i = std::max(s - 4, first_); i <= std::min(s, end_ - 1); ++i) {
+      if (weight_[static_cast<std::size_t>(i - first_)] > 0) {
+        is_open_[static_cast<std::size_t>(s - s0_)] = 1;
       }
     }
   }

@@ -63,6 +63,7 @@ class BandSmoother {
   void verify(const BandPolyline& line, const BandKnots& knots, ControlPoints& points,
               SmoothedWindow& out) noexcept;
   void pull(int round, std::int64_t span) noexcept;
+  void open_pulled() noexcept;
 
   BandTuning tuning_;
   std::int64_t first_ = 0, end_ = 0;  ///< free control points

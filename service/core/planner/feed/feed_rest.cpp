@@ -16,6 +16,24 @@ constexpr int kRestSteps = 120;
 constexpr int kRestHalvings = 4;       // of its last step
 constexpr double kCrawlMargin = 1.02;  // on the duration: limits between samples
 
+/// The least duration of a crawl over `length` that keeps the jerk and what comes with it at a
+/// sample of a cell, where it has `shape` with the jerk `j`; no less than `duration`.
+double duration_at(const FeedLimits& limits, double tight, const CellSample& at, double length,
+                   const Crawl::Shape& shape, double j, double duration) noexcept {
+  const double v = length * shape.v, a = length * shape.a;
+  for (int i = 0; i < limits.count; ++i) {
+    const double speed = std::abs(at.d1[i] * v) / limits.velocity[i];
+    const double jerk = std::abs(at.d1[i] * j + 3 * at.d2[i] * v * a + at.d3[i] * v * v * v) /
+                        (tight * limits.jerk[i]);
+    const double accel = std::abs(at.d1[i] * a + at.d2[i] * v * v) / limits.acceleration[i];
+    // accel/T² + filter/T <= 1
+    const double filter = limits.slope * std::abs(at.d1[i] * v) / limits.acceleration[i];
+    const double by_accel = 0.5 * (filter + std::sqrt(filter * filter + 4 * accel));
+    duration = std::max(duration, kCrawlMargin * std::max({speed, by_accel, std::cbrt(jerk)}));
+  }
+  return duration;
+}
+
 }  // namespace
 
 double steady_b(const CellGrid& grid, const FeedLimits& limits, std::int64_t first,
@@ -101,21 +119,12 @@ Crawl crawl_over(const CellGrid& grid, const FeedLimits& limits, std::int64_t fi
     for (int k = 0; k <= FeedCell::kSteps; ++k) {
       const double x = (begin + cell.h * k / FeedCell::kSteps) / crawl.length;
       const Crawl::Shape shape = Crawl::shape_at(std::min(x, 1.0));
-      const double v = crawl.length * shape.v, a = crawl.length * shape.a;
+      const double v = crawl.length * shape.v;
       const CellSample& at = cell.at[k];
       crawl.duration = std::max(crawl.duration, kCrawlMargin * v / std::sqrt(at.max_b));
       for (const double j : {crawl.length * shape.j, -crawl.length * shape.j}) {
-        for (int i = 0; i < limits.count; ++i) {
-          const double speed = std::abs(at.d1[i] * v) / limits.velocity[i];
-          const double jerk = std::abs(at.d1[i] * j + 3 * at.d2[i] * v * a + at.d3[i] * v * v * v) /
-                              (cell.tight * limits.jerk[i]);
-          const double accel = std::abs(at.d1[i] * a + at.d2[i] * v * v) / limits.acceleration[i];
-          // accel/T² + filter/T <= 1
-          const double filter = limits.slope * std::abs(at.d1[i] * v) / limits.acceleration[i];
-          const double by_accel = 0.5 * (filter + std::sqrt(filter * filter + 4 * accel));
-          crawl.duration =
-              std::max(crawl.duration, kCrawlMargin * std::max({speed, by_accel, std::cbrt(jerk)}));
-        }
+        crawl.duration =
+            duration_at(limits, cell.tight, at, crawl.length, shape, j, crawl.duration);
       }
     }
     begin += cell.h;

@@ -283,6 +283,17 @@ PathFault Router::approach_joints(const ClBlock& block, const JointVector& to, P
   return {};
 }
 
+PathFault Router::find_target_fault(const ToolPose& target,
+                                    const PlanCursor& cursor) const noexcept {
+  const auto at = solve(model_, cursor.tool_length_mm, target, 0, cursor.joints);
+  const int joint = first_joint_outside_travel(model_, at.q, 1e-9);
+  if (joint >= 0) return {PathFault::Kind::kTravel, joint, limited_value(model_, at.q, joint)};
+  const int box = keep_out_at(model_.keep_out, at.q);
+  if (box >= 0) return {PathFault::Kind::kKeepOut, -1, 1.0 * box};
+  const PathFault tip = find_tip_fault(cursor.tool_length_mm, at.q);
+  return is_fault(tip) ? tip : PathFault{PathFault::Kind::kUnreachable, -1, 0};
+}
+
 PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
   deviation_rad_ = 0;
   const ToolPose target{block.is_arc ? find_arc_begin(block) : to_vector(block.tip_mm),
@@ -308,18 +319,7 @@ PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& ou
   }
   const Job job{block, MotionKind::kApproach, model_.approach_feed_mm_per_s, 0};
   PathFault first{PathFault::Kind::kUnreachable, -1, 0};
-  if (ways.count == 0) {
-    const auto at = solve(model_, cursor.tool_length_mm, target, 0, cursor.joints);
-    const int joint = first_joint_outside_travel(model_, at.q, 1e-9);
-    const int box = keep_out_at(model_.keep_out, at.q);
-    if (joint >= 0) {
-      first = {PathFault::Kind::kTravel, joint, limited_value(model_, at.q, joint)};
-    } else if (box >= 0) {
-      first = {PathFault::Kind::kKeepOut, -1, 1.0 * box};
-    } else if (const PathFault tip = find_tip_fault(cursor.tool_length_mm, at.q); is_fault(tip)) {
-      first = tip;
-    }
-  }
+  if (ways.count == 0) first = find_target_fault(target, cursor);
   lost_.reset();
   bool is_tried = false;
   for (int n = 0; n < ways.count; ++n) {

@@ -199,6 +199,9 @@ class Router {
   /// box, and past every keep-out box; 0: not at all.
   [[nodiscard]] double find_clearance(const ToolPose& pose, const JointVector& joints,
                                       double tool_length_mm, double whole_mm) const noexcept;
+  /// Why no solution at `target` may be approached.
+  [[nodiscard]] PathFault find_target_fault(const ToolPose& target,
+                                            const PlanCursor& cursor) const noexcept;
   /// Where the tip leaves its box at `joints`.
   [[nodiscard]] PathFault find_tip_fault(double tool_length_mm,
                                          const JointVector& joints) const noexcept;
