@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "meridian/cycle/drive_state.hpp"
@@ -52,12 +53,25 @@ inline constexpr std::uint16_t kStartHoming = 0x10;  ///< in homing mode, beside
   return controlword::kDisableVoltage;
 }
 
+/// What a drive is to do in operation.
+enum class DriveWork : std::uint8_t {
+  kFollow,  ///< setpoints, in cyclic position mode
+  kHome,    ///< nothing, in homing mode
+  kSearch   ///< its reference, in homing mode
+};
+
+/// The work that masks of joints ask of `drive`; only one that is to home can be to search.
+[[nodiscard]] constexpr DriveWork drive_work(std::uint32_t homing_mask, std::uint32_t search_mask,
+                                             std::size_t drive) noexcept {
+  if ((homing_mask >> drive & 1U) == 0) return DriveWork::kFollow;
+  return (search_mask >> drive & 1U) != 0 ? DriveWork::kSearch : DriveWork::kHome;
+}
+
 /// What the machine asks of one drive.
 struct DriveTask {
-  bool is_enabled = false;    ///< to be in operation
-  bool is_homing = false;     ///< to be in homing mode
-  bool is_searching = false;  ///< its reference, in that mode
-  bool is_reset = false;      ///< of a fault: the operator said so
+  bool is_enabled = false;  ///< to be in operation
+  DriveWork work = DriveWork::kFollow;
+  bool is_reset = false;  ///< of a fault: the operator said so
 };
 
 /// Objects 6040h and 6060h.
@@ -73,8 +87,8 @@ struct DriveOrder {
   const DriveState state = is_heard ? drive_state(statusword) : DriveState::kSwitchOnDisabled;
   DriveOrder order{next_controlword(state, task.is_enabled)};
   if (state == DriveState::kFault && task.is_reset) order.controlword = controlword::kFaultReset;
-  if (task.is_homing) order.mode = dds::kHomingMode;
-  if (state == DriveState::kOperationEnabled && task.is_searching) {
+  if (task.work != DriveWork::kFollow) order.mode = dds::kHomingMode;
+  if (state == DriveState::kOperationEnabled && task.work == DriveWork::kSearch) {
     order.controlword |= controlword::kStartHoming;
   }
   return order;

@@ -18,11 +18,11 @@ void DriveCommander::work(const DrivesAsked& asked, const DriveWords& words, std
   const bool is_reset = reset_ns != 0 && now_ns < reset_ns + kReset_ns;
   for (int drive = 0; drive < drive_count_; ++drive) {
     const auto i = static_cast<std::size_t>(drive);
-    const DriveOrder next = next_order((words.joint_mask >> drive & 1U) != 0, words.statusword[i],
-                                       {.is_enabled = asked.is_enabled,
-                                        .is_homing = (asked.homing_mask >> drive & 1U) != 0,
-                                        .is_searching = (asked.search_mask >> drive & 1U) != 0,
-                                        .is_reset = is_reset});
+    const DriveOrder next =
+        next_order((words.joint_mask >> drive & 1U) != 0, words.statusword[i],
+                   {.is_enabled = asked.is_enabled,
+                    .work = drive_work(asked.homing_mask, asked.search_mask, i),
+                    .is_reset = is_reset});
     dds::DriveCommand& sent = sent_[i];
     const bool is_news = sent.sample == 0 || sent.controlword != next.controlword ||
                          sent.mode != next.mode || sent.epoch != asked.epoch;

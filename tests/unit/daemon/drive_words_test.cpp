@@ -35,11 +35,21 @@ TEST(DriveWords, ResetAFaultWhereTheOperatorSaidSo) {
 }
 
 TEST(DriveWords, BeginASearchInOperationEnabledAlone) {
-  const DriveTask task{.is_enabled = true, .is_homing = true, .is_searching = true};
+  const DriveTask task{.is_enabled = true, .work = DriveWork::kSearch};
   EXPECT_EQ(next_order(true, 0x0223, task).controlword, 0x0F);
   EXPECT_EQ(next_order(true, 0x0223, task).mode, dds::kHomingMode);
   EXPECT_EQ(next_order(true, 0x0227, task).controlword, 0x1F);
   EXPECT_EQ(next_order(true, 0x0227, {}).mode, dds::kCyclicPositionMode);
+}
+
+TEST(DriveWords, AskADriveForOneWork) {
+  EXPECT_EQ(drive_work(0, 0, 1), DriveWork::kFollow);
+  EXPECT_EQ(drive_work(0b10, 0, 1), DriveWork::kHome);
+  EXPECT_EQ(drive_work(0b10, 0b10, 1), DriveWork::kSearch);
+  EXPECT_EQ(drive_work(0b01, 0b11, 1), DriveWork::kFollow) << "no search outside of homing mode";
+  const DriveTask task{.is_enabled = true, .work = DriveWork::kHome};
+  EXPECT_EQ(next_order(true, 0x0227, task).controlword, 0x0F);
+  EXPECT_EQ(next_order(true, 0x0227, task).mode, dds::kHomingMode);
 }
 
 TEST(DriveWords, ReadsWhatADriveSaysInHomingMode) {

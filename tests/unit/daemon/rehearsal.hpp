@@ -186,12 +186,11 @@ struct Rehearsal {
   [[nodiscard]] dds::DriveCommand command_of(std::uint8_t drive, State state) const {
     const HomingAsked asked = asked_of(world.state.homing);
     const interpolator::DriveWords& words = merge.words();
-    const interpolator::DriveOrder next =
-        interpolator::next_order((words.joint_mask >> drive & 1U) != 0, words.statusword[drive],
-                                 {.is_enabled = is_enabled(state),
-                                  .is_homing = (asked.mode_mask >> drive & 1U) != 0,
-                                  .is_searching = (asked.start_mask >> drive & 1U) != 0,
-                                  .is_reset = is_resetting});
+    const interpolator::DriveOrder next = interpolator::next_order(
+        (words.joint_mask >> drive & 1U) != 0, words.statusword[drive],
+        {.is_enabled = is_enabled(state),
+         .work = interpolator::drive_work(asked.mode_mask, asked.start_mask, drive),
+         .is_reset = is_resetting});
     dds::DriveCommand command;
     command.drive = drive;
     command.service_id = kService;
