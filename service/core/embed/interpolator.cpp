@@ -230,7 +230,7 @@ class Interpolator::Machine {
 
   const MachineModel model_;
   const ToolTable tools_;
-  // The pushing thread's.
+  // Flags: of two threads. The pushing thread's:
   stream::BlockCheck check_;
   SmoothPlanner planner_;
   MotionPort port_;

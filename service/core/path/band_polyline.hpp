@@ -35,6 +35,7 @@ inline constexpr double kPoleShare = 0.5;
 
 /// One corner of the CL polyline with the segment that ends in it. The store is most of a planner's
 /// memory: what follows from little is not kept.
+// Flags: of one segment, packed into the word of `near_pole`; each combination occurs.
 struct BandVertex {
   Vector6 x{};            ///< tip, axis
   double u = 0;           ///< chord length from the begin

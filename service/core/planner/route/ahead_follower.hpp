@@ -19,6 +19,7 @@ namespace meridian {
 /// way is lost.
 ///
 /// Units: mm, rad, s. No memory.
+// Flags: each is known by itself on the path, in any order.
 class AheadFollower {
  public:
   /// `ways` must stay.

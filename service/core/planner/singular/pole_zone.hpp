@@ -14,6 +14,7 @@ namespace meridian {
 
 /// A piece of a stretch beside the pole on which the redundant joint is driven. Outside such
 /// stretches the joints follow the path exactly.
+// Flags: a stretch of one piece has all of them; each combination occurs.
 struct PoleZone {
   double begin = 0, end = 0;  ///< u
   FreeQuintic free{};         ///< Bernstein values over [begin, end]

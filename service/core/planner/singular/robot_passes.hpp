@@ -88,6 +88,7 @@ class RobotPasses : private SpanLookup {
   void emit() noexcept;
 
   const MachineModel& model_;
+  // Flags: the machine's, the input's and the output's: none excludes another.
   bool is_used_ = false, is_finished_ = false, is_exact_ = false;
   double tool_length_mm_ = 0, axis_tolerance_rad_ = 0, tip_tolerance_mm_ = 0;
   ProgrammedAxis axes_;
