@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed/feed_stop_margin.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "meridian/cycle/stop_law.hpp"
+#include "unit/planner/feed/made_cells.hpp"
+
+namespace meridian::test::feed_stop_margin {
+namespace {
+
+constexpr int kCells = 80;
+constexpr double kH = 0.5;                                    // mm, of a cell
+constexpr double kAccel = 0.99 * 3000, kJerk = 0.99 * 60000;  // of the first joint
+constexpr double kFaultAccel = 0.99 * 6000, kFaultJerk = 0.99 * 240000;
+
+/// Cells along which the first joint goes d1 times as fast as the path, and bends by d2 and d3.
+struct Path {
+  Path() {
+    for (int k = 0; k < kCells; ++k) {
+      cells.grid[k].x = k * kH;
+      set(k, 1);
+    }
+    margin.begin(cells.grid, kCells - 1);
+  }
+  void set(int cell, double d1, double d2 = 0, double d3 = 0) {
+    FeedCell& here = cells.grid[cell];
+    for (CellSample& at : here.at) {
+      at.d1[0] = d1;
+      at.d2[0] = d2;
+      at.d3[0] = d3;
+    }
+    const auto side = [](double value, CellBound::Sides& sides) {
+      sides.up[0] = std::max(value, 0.0);
+      sides.down[0] = std::max(-value, 0.0);
+    };
+    here.bound = {};
+    side(d1, here.bound.d1);
+    side(d2, here.bound.d2);
+    side(d3, here.bound.d3);
+    here.bound.rate[0] = std::abs(d1);
+  }
+  /// A piece from the middle of `cell` on, at v and a, for 1 ms.
+  TimePiece grant(int cell, double v, double a = 0, bool is_tail = false) {
+    TimePiece time;
+    time.duration = 1e-3;
+    time.s0 = (cell + 0.25) * kH;
+    time.v = v;
+    time.a = a;
+    time.is_tail = is_tail;
+    FeedPiece piece;
+    piece.cell = cell;
+    margin.grant(piece, time);
+    return time;
+  }
+
+  /// The largest share of a limit that stops from `time` use, from both ends and between, slower
+  /// ones included, and how far they go.
+  struct Use {
+    double worst = 0, farthest = 0;
+  };
+  [[nodiscard]] Use use(const TimePiece& time, const StopMargin& margin_of, bool is_fault,
+                        double fastest = 1) const {
+    Use out;
+    for (const double rate : {1.0, 0.8, 0.5, 0.2}) {
+      for (int k = 0; k <= 4; ++k) {
+        PathState begin = state_at(time, k * time.duration / 4);
+        begin = {begin.s, rate * fastest * begin.ds, rate * rate * fastest * fastest * begin.dds,
+                 0};
+        const StopLaw law(begin, margin_of);
+        for (int n = 0; n < 60; ++n) {
+          const PathState at = law.at(n * law.duration() / 60);
+          const auto cell = std::min(kCells - 1, static_cast<int>(at.s / kH));
+          const CellSample& here = cells.grid[cell].at[0];
+          const double v = at.ds;
+          const double accel = std::abs(here.d2[0] * v * v + here.d1[0] * at.dds);
+          const double jerk =
+              std::abs(here.d3[0] * v * v * v + 3 * here.d2[0] * v * at.dds + here.d1[0] * at.ddds);
+          out.worst = std::max(
+              {out.worst, accel / (is_fault ? 6000 : 3000), jerk / (is_fault ? 240000 : 60000)});
+          out.farthest = std::max(out.farthest, at.s);
+        }
+      }
+    }
+    return out;
+  }
+  void expect_safe(const TimePiece& time) const {
+    EXPECT_LE(use(time, {time.stop_accel, time.stop_jerk}, false).worst, 1);
+    EXPECT_LE(use(time, {time.fault_accel, time.fault_jerk}, true).worst, 1);
+    EXPECT_LE(use(time, {time.slow_stop_accel, time.slow_stop_jerk}, false, 0.6).worst, 1);
+    EXPECT_LE(use(time, {time.slow_fault_accel, time.slow_fault_jerk}, true, 0.6).worst, 1);
+  }
+
+  MadeCells cells{kCells, kH, 1e6};
+  FeedStopMargin margin{cells.model};
+};
+
+TEST(FeedStopMargin, IsAllOfTheJointWhereThePathIsStraight) {
+  Path path;
+  const TimePiece time = path.grant(10, 50);
+  EXPECT_NEAR(time.stop_jerk, kJerk, 1e-6);
+  EXPECT_NEAR(time.stop_accel, 1.02 * std::sqrt(kJerk * 50), 1e-6) << "no more than it needs";
+  EXPECT_NEAR(time.fault_jerk, kFaultJerk, 1e-6);
+  EXPECT_NEAR(time.fault_accel, 1.02 * std::sqrt(kFaultJerk * 50), 1e-6);
+  EXPECT_EQ(time.stop_velocity, kAnyVelocity);
+  EXPECT_EQ(time.fault_velocity, kAnyVelocity);
+  EXPECT_NEAR(time.slow_velocity, 30, 1e-9);
+  EXPECT_NEAR(time.slow_stop_jerk, kJerk, 1e-6);
+  EXPECT_NEAR(time.slow_stop_accel, 1.02 * std::sqrt(kJerk * 30), 1e-6);
+  EXPECT_NEAR(time.slow_fault_jerk, kFaultJerk, 1e-6);
+  EXPECT_NEAR(time.slow_fault_accel, 1.02 * std::sqrt(kFaultJerk * 30), 1e-6);
+  path.expect_safe(time);
+}
+
+TEST(FeedStopMargin, IsNoMoreThanTheJointHasWhereTheSpeedWouldNeedMore) {
+  Path path;
+  const TimePiece time = path.grant(10, 200);
+  EXPECT_NEAR(time.stop_accel, kAccel, 1e-6);
+  EXPECT_NEAR(time.fault_accel, kFaultAccel, 1e-6);
+  path.expect_safe(time);
+}
+
+TEST(FeedStopMargin, IsThatOfACellAheadWhichAStopReaches) {
+  Path path;
+  for (int k = 16; k < kCells; ++k) path.set(k, 3);
+  const TimePiece near = path.grant(14, 50);
+  path.expect_safe(near);
+  EXPECT_GT(near.stop_jerk, 0.9 * kJerk / 3);
+  EXPECT_LT(near.stop_jerk, 1.01 * kJerk / 3);
+  path.margin.begin(path.cells.grid, kCells - 1);
+  const TimePiece far = path.grant(2, 50);  // 7 mm before it
+  EXPECT_NEAR(far.stop_jerk, kJerk, 1e-6);
+}
+
+TEST(FeedStopMargin, LeavesRoomForWhatThePathBends) {
+  for (const double sign : {1.0, -1.0}) {
+    for (const double rising : {-800.0, 0.0, 800.0}) {
+      SCOPED_TRACE(testing::Message() << sign << " " << rising);
+      Path path;
+      for (int k = 0; k < kCells; ++k) path.set(k, sign * 0.8, 0.15, 0.02);
+      const TimePiece time = path.grant(20, 60, rising);
+      path.expect_safe(time);
+      ASSERT_GT(time.stop_jerk, 0);
+      EXPECT_GT(path.use(time, {time.stop_accel, time.stop_jerk}, false).worst, 0.6);
+      EXPECT_GT(path.use(time, {time.fault_accel, time.fault_jerk}, true).worst, 0.6);
+      EXPECT_GE(time.stop_accel, 0.9 * std::max(0.0, -rising)) << "it eases off hardly";
+      EXPECT_GT(time.slow_stop_jerk, time.stop_jerk);
+    }
+  }
+}
+
+TEST(FeedStopMargin, EndsBeforeThePlanDoes) {
+  // The plan itself comes to rest 0.96 mm ahead: a stop with less would pass it.
+  Path path;
+  for (int cell = 10; cell < 40; ++cell) {
+    path.margin.begin(path.cells.grid, cell + 3);
+    const double end = (cell + 3) * kH;
+    const TimePiece time = path.grant(cell, 30, -400);
+    if (!(time.stop_jerk > 0)) continue;
+    EXPECT_LE(path.use(time, {time.stop_accel, time.stop_jerk}, false).farthest, end + 1e-9);
+    EXPECT_LE(path.use(time, {time.fault_accel, time.fault_jerk}, true).farthest, end + 1e-9);
+  }
+  path.margin.begin(path.cells.grid, 11);
+  const TimePiece none = path.grant(10, 100, 0, true);
+  EXPECT_EQ(none.stop_jerk, 0) << "nothing stops within 0.4 mm";
+  EXPECT_EQ(none.stop_accel, 0);
+  EXPECT_EQ(none.stop_velocity, 0);
+}
+
+TEST(FeedStopMargin, IsSoughtForSlowerMachinesWhereTheFullSpeedLeavesNone) {
+  Path path;
+  // At 60 mm/s the bend takes all of the jerk; at 50 there is some left.
+  const double d3 = 60000 / std::pow(60, 3);
+  for (int k = 0; k < kCells; ++k) path.set(k, 1, 0, d3);
+  const TimePiece time = path.grant(20, 60);
+  ASSERT_GT(time.stop_jerk, 0);
+  EXPECT_LT(time.stop_velocity, 60);
+  EXPECT_GT(time.stop_velocity, 40);
+  const double rate = time.stop_velocity / 60;
+  EXPECT_LE(path.use(time, {time.stop_accel, time.stop_jerk}, false, rate).worst, 1);
+  path.margin.begin(path.cells.grid, kCells - 1);
+  const TimePiece tail = path.grant(20, 60, 0, true);
+  EXPECT_EQ(tail.stop_jerk, 0) << "a tail comes to rest anyway";
+}
+
+TEST(FeedStopMargin, HasNothingForSlowMachinesInATail) {
+  Path path;
+  const TimePiece time = path.grant(10, 50, 0, true);
+  EXPECT_NEAR(time.stop_jerk, kJerk, 1e-6);
+  EXPECT_NEAR(time.slow_velocity, 30, 1e-9);
+  EXPECT_EQ(time.slow_stop_jerk, 0);
+  EXPECT_EQ(time.slow_fault_jerk, 0);
+  EXPECT_EQ(time.slow_stop_accel, 0);
+  EXPECT_EQ(time.slow_fault_accel, 0);
+}
+
+TEST(FeedStopMargin, KeepsTheFeedWhileAccelerationIsLetGo) {
+  Path path;
+  for (int k = 20; k < kCells; ++k) {
+    path.cells.grid[k].max_b = 50.5 * 50.5;
+    for (CellSample& at : path.cells.grid[k].at) at.max_b = 50.5 * 50.5;
+  }
+  // At 1500 mm/s² a stop still gains a²/2j = 19 mm/s: in no cell is so much allowed.
+  EXPECT_EQ(path.grant(20, 50, 1500, true).stop_jerk, 0);
+  EXPECT_EQ(path.grant(19, 50, 1500, true).stop_jerk, 0) << "it reaches into the next cell";
+  EXPECT_GT(path.grant(20, 30, 1500, true).stop_jerk, 0);
+  EXPECT_GT(path.grant(12, 30, 1500, true).stop_jerk, 0);
+}
+
+TEST(FeedStopMargin, GrowsByAQuarterFromPieceToPieceAtMost) {
+  Path path;
+  path.set(10, 4);
+  const TimePiece hard = path.grant(10, 50);
+  EXPECT_NEAR(hard.stop_jerk, kJerk / 4, 0.05 * kJerk / 4);
+  const TimePiece next = path.grant(11, 50);
+  EXPECT_NEAR(next.stop_jerk, 1.25 * hard.stop_jerk, 1e-6);
+  EXPECT_LE(next.stop_accel, 1.25 * hard.stop_accel + 1e-6);
+  EXPECT_NEAR(next.slow_stop_jerk, kJerk, 1e-6) << "those of slow machines stand by themselves";
+  path.margin.begin(path.cells.grid, kCells - 1);
+  EXPECT_NEAR(path.grant(11, 50).stop_jerk, kJerk, 1e-6) << "a window begins afresh";
+}
+
+TEST(FeedStopMargin, UsesLessJerkWhereRoundingShowsBesideThePole) {
+  Path path;
+  for (int k = 0; k < kCells; ++k) path.cells.grid[k].made_tight = 0.5;
+  const TimePiece time = path.grant(10, 50);
+  EXPECT_GT(time.stop_jerk, 0.9 * 0.5 * kJerk);
+  EXPECT_LE(time.stop_jerk, 0.5 * kJerk * (1 + 1e-9));
+}
+
+TEST(FeedStopMargin, LeavesRoomForTheRateOfPlanTime) {
+  // Slower machines may still gain speed: slope times ṡ counts as acceleration in the first cell.
+  Path path;
+  for (int k = 0; k < kCells; ++k) path.set(k, 1, 0.2, 0);
+  const TimePiece at_once = path.grant(20, 100);
+  path.cells.model.override_ramp_s = 100;
+  FeedStopMargin slow(path.cells.model);
+  slow.begin(path.cells.grid, kCells - 1);
+  TimePiece time;
+  time.duration = 1e-3;
+  time.s0 = 20.25 * kH;
+  time.v = 100;
+  FeedPiece piece;
+  piece.cell = 20;
+  slow.grant(piece, time);
+  EXPECT_GE(time.stop_accel, at_once.stop_accel);
+  EXPECT_GE(time.stop_jerk, at_once.stop_jerk);
+}
+
+}  // namespace
+}  // namespace meridian::test::feed_stop_margin

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/feed/leg_feed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/build_piece.hpp"
+#include "support/machines.hpp"
+#include "unit/planner/feed/staged_motion.hpp"
+
+namespace meridian::test::leg_feed {
+namespace {
+
+constexpr double kNever_s = std::numeric_limits<double>::infinity();
+
+ToolPose pose_of(const Vector3& tip, double tilt, double azimuth) {
+  return {tip,
+          {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)}};
+}
+
+/// A leg, its cells, and what is staged of it.
+struct Fed {
+  Fed(const MachineModel& m, const ToolPose& begin, const ToolPose& end, double feed_mm_per_s)
+      : model(m), feed(model) {
+    leg.path = make_line(begin, end);
+    leg.path.tool_length_mm = model.tool_length_mm;
+    leg.feed_mm_per_s = feed_mm_per_s;
+    leg.window = 7;
+    start = solve(model, model.tool_length_mm, begin, 0, {}).q;
+    staged->clear(40);
+    measure();
+  }
+  void measure() {
+    JointVector at = start;
+    table->clear();
+    EXPECT_FALSE(is_fault(table->append(model, leg.path, 0, leg.path.length, 60, at)));
+  }
+  double plan(double less_than_s = kNever_s) {
+    joints = start;
+    return feed.plan(leg, table->all(), less_than_s, *staged, joints);
+  }
+
+  MachineModel model;
+  LegFeed feed;
+  Leg leg;
+  JointVector start{}, joints{};
+  std::unique_ptr<CellTable> table = std::make_unique<CellTable>();
+  std::unique_ptr<Staging> staged = std::make_unique<Staging>();
+};
+
+Fed turning(double feed_mm_per_s = 200) {
+  return {bench_machine(), pose_of({0, 0, 0}, 0.5, 0), pose_of({150, 30, 0}, 0.06, 0.8),
+          feed_mm_per_s};
+}
+
+TEST(LegFeed, IsOneMotionFromRestToRestInsideEveryLimit) {
+  Fed one = turning();
+  const double duration = one.plan();
+  ASSERT_GT(duration, 0);
+  EXPECT_NEAR(duration, duration_of(*one.staged), 1e-12);
+  ASSERT_EQ(one.staged->path_count, 1);
+  EXPECT_EQ(one.staged->paths[0].index, 40U);
+  EXPECT_EQ(one.staged->paths[0].joints_begin, one.start);
+  EXPECT_EQ(one.staged->paths[0].joints_end, one.joints);
+  const ToolPose at = forward(one.model, one.model.tool_length_mm, one.joints);
+  EXPECT_NEAR((at.tip - Vector3(150, 30, 0)).norm(), 0, 1e-9);
+  EXPECT_LE(use_of_motion(one.model, *one.staged).worst(), 1);
+  EXPECT_GT(use_of_motion(one.model, *one.staged).worst(), 0.97);
+  for (int n = 0; n < one.staged->time_count; ++n) {
+    EXPECT_EQ(one.staged->times[n].window, 7U);
+    EXPECT_EQ(one.staged->times[n].path_index, 40U);
+  }
+}
+
+TEST(LegFeed, GrantsStopsInsideEveryLimit) {
+  Fed one = turning();
+  ASSERT_GT(one.plan(), 0);
+  double least = 1e300;
+  for (int n = 2; n + 2 < one.staged->time_count; ++n) {
+    least = std::min(least, one.staged->times[n].stop_jerk);
+  }
+  EXPECT_GT(least, 0);
+  EXPECT_LE(use_of_stops(one.model, *one.staged, false).worst(), 1 + 1e-6);
+  EXPECT_LE(use_of_stops(one.model, *one.staged, true).worst(), 1 + 1e-6);
+}
+
+TEST(LegFeed, KeepsTheFeedOfTheTip) {
+  Fed one = turning(30);
+  ASSERT_GT(one.plan(), 0);
+  EXPECT_LE(tip_speed_of(*one.staged), 30);
+  EXPECT_GT(tip_speed_of(*one.staged), 29.9);
+  one.leg.feed_factor = 1.5;
+  one.staged->clear(40);
+  ASSERT_GT(one.plan(), 0);
+  EXPECT_GT(tip_speed_of(*one.staged), 44.8);
+}
+
+TEST(LegFeed, KeepsTheShareOfALegInInverseTime) {
+  Fed one = turning(0);
+  one.leg.share_per_s = 0.2;
+  ASSERT_GT(one.plan(), 0);
+  double most = 0;
+  for (int n = 0; n < one.staged->time_count; ++n) most = std::max(most, one.staged->times[n].v);
+  EXPECT_LE(most, 0.2 * one.leg.path.length);
+  EXPECT_GT(most, 0.199 * one.leg.path.length);
+}
+
+TEST(LegFeed, TakesHardlyLongerThanFeedAndJointsDo) {
+  Fed one(lai_machine(), pose_of({0, 0, 0}, 0.3, 0.2), pose_of({60, 20, 10}, 0.35, 0.3), 50);
+  const double duration = one.plan();
+  const double least = min_leg_time(one.leg, one.table->all(), planned_caps(one.model, 600));
+  EXPECT_GT(duration, least);
+  EXPECT_LT(duration, 1.06 * least);
+}
+
+TEST(LegFeed, StagesNothingThatTakesNoLessThanAskedFor) {
+  Fed one = turning();
+  const double duration = one.plan();
+  one.staged->clear(40);
+  EXPECT_EQ(one.plan(0.999 * duration), 0);
+  EXPECT_EQ(one.staged->path_count, 0);
+  EXPECT_EQ(one.staged->time_count, 0);
+  EXPECT_EQ(one.joints, one.start);
+  EXPECT_EQ(one.plan(1.001 * duration), duration) << "the same leg, the same bits";
+}
+
+TEST(LegFeed, StagesNothingWhereThereIsNoRoom) {
+  Fed one = turning();
+  one.staged->path_count = static_cast<int>(one.staged->paths.size());
+  EXPECT_EQ(one.plan(), 0);
+  one.staged->clear(40);
+  one.staged->time_count = static_cast<int>(one.staged->times.size()) - 3;
+  EXPECT_EQ(one.plan(), 0);
+  EXPECT_EQ(one.staged->time_count, static_cast<int>(one.staged->times.size()) - 3);
+}
+
+TEST(LegFeed, HasNoMoreCellsHoweverLongTheLeg) {
+  Fed one(lai_machine(), pose_of({-400, 0, 0}, 0.3, 0.2), pose_of({400, 0, 0}, 0.3, 0.25), 4);
+  ASSERT_GT(one.plan(), 190);
+  EXPECT_LT(one.staged->time_count, 700);
+}
+
+JointCell cell_of(double begin, double end, double d1, double share_rate) {
+  JointCell cell;
+  cell.begin = begin;
+  cell.end = end;
+  cell.d1[0] = d1;
+  cell.share_rate = share_rate;
+  return cell;
+}
+
+TEST(LegFeed, KnowsATimeThatNoMotionFallsBelow) {
+  Leg leg;
+  leg.path = make_line({{0, 0, 0}, Vector3::UnitZ()}, {{100, 0, 0}, Vector3::UnitZ()});
+  leg.feed_mm_per_s = 20;
+  JointCaps caps;
+  caps.count = 1;
+  caps.velocity[0] = 30;
+  caps.acceleration[0] = 1000;
+  caps.jerk[0] = 20000;
+  // 60 mm at the feed, 40 mm where the joint goes five times as far.
+  const std::array cells{cell_of(0, 60, 1, 0.01), cell_of(60, 100, 5, 0.01)};
+  const double at_speed = 60 / (20 * (1 - 1e-7)) + 40.0 / 6;
+  const Profile easiest = rest_to_rest_with_reserve(100, {100 / at_speed, 1000, 20000});
+  EXPECT_NEAR(min_leg_time(leg, cells, caps), easiest.duration(), 1e-9);
+  EXPECT_GT(easiest.duration(), at_speed);
+  caps.jerk[0] = 1e-3;  // no profile: velocity alone
+  EXPECT_GE(min_leg_time(leg, cells, caps), at_speed);
+}
+
+}  // namespace
+}  // namespace meridian::test::leg_feed
