@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// What a stop may use in drawn situations: as reviewed. That it is safe, and hardly less than what
+/// would be, is the business of feed_stop_margin_test.cpp; this notices any other change.
+/// MERIDIAN_REGENERATE=1 prints the rows anew.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <vector>
+
+#include "service/core/planner/feed/feed_stop_margin.hpp"
+#include "unit/planner/feed/made_cells.hpp"
+
+namespace meridian::test::feed_stop_margin_drawn {
+namespace {
+
+constexpr int kCells = 60;
+constexpr double kShare = 1e-5;  // of a value, rows have six digits
+
+/// Acceleration and jerk of a hold, its speed, those of a FaultStop, and of slow holds.
+using Row = std::array<double, 8>;
+constexpr Row kRows[] = {
+    {1119.43, 33831.9, 35.9095, 3455.39, 209877, 43.2756, 1377.57, 243061},
+    {1880.99, 49516, 1e+06, 4653.46, 303056, 1e+06, 1803.23, 320247},
+    {1134.15, 39601.7, 30.1185, 3522.53, 328441, 1e+06, 1353.6, 343864},
+    {1235.39, 87729.3, 1e+06, 2485.7, 410227, 1e+06, 1175.31, 426834},
+    {1405.5, 36753.4, 51.6591, 3664.02, 149865, 1e+06, 1405.5, 306114},
+    {1233.05, 46000.4, 1e+06, 2481.01, 212425, 1e+06, 958.139, 221398},
+    {1641.82, 53310.6, 1e+06, 3915.49, 303204, 1e+06, 1519.9, 313627},
+    {0, 0, 0, 0, 0, 0, 0, 0},
+    {757.882, 80512.1, 1e+06, 1601.6, 359557, 1e+06, 784.92, 577000},
+    {1168.72, 46537, 26.5452, 2651.81, 188821, 1e+06, 1026.02, 262797},
+    {1214.14, 60614.6, 1e+06, 2189.89, 244055, 1e+06, 843.684, 244394},
+    {1659.77, 49556.7, 1e+06, 3333.14, 208740, 1e+06, 1292.61, 261226},
+    {0, 0, 0, 0, 0, 0, 0, 0},
+    {718.966, 28026.3, 84.9654, 3383.35, 180779, 84.9654, 1312.87, 263883},
+    {1199.17, 42632.4, 1e+06, 3996.84, 240475, 1e+06, 1558.13, 280715},
+    {0, 0, 0, 0, 0, 0, 0, 0},
+    {952.873, 58403.6, 1e+06, 1692.47, 235312, 1e+06, 829.285, 394868},
+    {1179.97, 61195.5, 1e+06, 2366.51, 246148, 1e+06, 917.052, 246968},
+    {1486.62, 35822.8, 69.5145, 4022.47, 156547, 1e+06, 1572.9, 196324},
+    {1014.71, 52752.1, 1e+06, 1707.36, 149351, 1e+06, 807.976, 228608},
+    {1303.61, 47732.1, 1e+06, 3865.24, 419634, 1e+06, 1503.49, 448989},
+    {1062.28, 33371.1, 1e+06, 2137.76, 201172, 1e+06, 815.484, 204365},
+    {900.918, 31649.7, 1e+06, 3567.38, 154834, 1e+06, 1387.65, 231495},
+    {1494.01, 28316.4, 1e+06, 3250.33, 134025, 1e+06, 1267.93, 241756},
+    {1359.79, 50018.7, 1e+06, 2911.17, 223590, 1e+06, 0, 0},
+    {1366.75, 124516, 1e+06, 2735.49, 498840, 1e+06, 1572.45, 1.12603e+06},
+    {1184.84, 42689.5, 31.6082, 3090.2, 167529, 54.7876, 0, 175933},
+    {1564.89, 74631.4, 1e+06, 3303.63, 334229, 1e+06, 1279.53, 427558},
+    {1610.75, 57011.3, 1e+06, 3113.55, 338636, 1e+06, 1297.23, 423794},
+    {0, 0, 0, 2071.97, 188492, 1e+06, 0, 0},
+    {1037.69, 39997, 25.0829, 2938.12, 159743, 50.1659, 0, 159743},
+    {1383.25, 67087.6, 1e+06, 2503.61, 269782, 1e+06, 964.887, 270113},
+    {1153.94, 58348.5, 1e+06, 2263.88, 299016, 1e+06, 873.028, 304135},
+    {850.331, 86938.2, 1e+06, 1589.67, 348170, 1e+06, 613.659, 348333},
+    {1423.78, 91850.9, 1e+06, 2250.14, 386026, 1e+06, 859.44, 390560},
+    {1411.27, 68312.6, 1e+06, 2751.93, 275911, 1e+06, 1735.77, 445045},
+    {1944.04, 42950.6, 82.5523, 4306.21, 205687, 1e+06, 1676.1, 222073},
+    {1643.28, 85307.4, 1e+06, 3317.9, 355751, 1e+06, 1837.58, 614825},
+    {1067.9, 78550.8, 1e+06, 2128.05, 314295, 1e+06, 824.056, 314318},
+    {1534.55, 50153.8, 38.1646, 3954.23, 197792, 1e+06, 1534.55, 220693},
+    {1372.95, 54363.6, 1e+06, 3344.76, 300362, 1e+06, 1340.35, 344617},
+    {1486.61, 48857.3, 1e+06, 3121.75, 215442, 1e+06, 0, 0},
+    {1736.56, 52061.3, 54.7872, 3774.54, 233056, 1e+06, 1467.33, 247586},
+    {1437.05, 41576.4, 45.6747, 3214.27, 178170, 1e+06, 1242.14, 187893},
+    {793.24, 53174, 1e+06, 1539.4, 244981, 1e+06, 679.979, 326786},
+    {1960.1, 42720.6, 1e+06, 4195.64, 195737, 1e+06, 1635.68, 207843},
+    {1441.74, 50200.1, 1e+06, 3388.83, 305509, 1e+06, 1308.12, 402925},
+    {1285.09, 64491.2, 1e+06, 2565.46, 262070, 1e+06, 1574.37, 673076},
+    {2847.57, 249888, 1e+06, 2852.95, 230303, 1e+06, 0, 0},
+    {1060.68, 56136.9, 1e+06, 2125.82, 226582, 1e+06, 0, 0},
+    {1671.52, 51704.2, 1e+06, 3463.53, 221995, 1e+06, 1339.1, 327634},
+    {778.751, 55668.9, 1e+06, 1560.25, 236738, 1e+06, 1301.26, 347299},
+    {0, 0, 0, 0, 0, 0, 0, 0},
+    {1505.6, 53606.9, 1e+06, 3562.29, 300741, 1e+06, 0, 0},
+    {0, 0, 0, 2988.03, 161508, 1e+06, 0, 0},
+    {0, 0, 0, 0, 0, 0, 0, 0},
+    {1045.76, 119428, 1e+06, 2107.92, 485718, 1e+06, 0, 0},
+    {1466.94, 55289.5, 36.2624, 3677.32, 221916, 56.811, 1466.94, 243458},
+    {1398.68, 42225.8, 1e+06, 3170.97, 217052, 1e+06, 1429.39, 302260},
+    {1193.39, 31433.3, 1e+06, 3413.84, 168496, 1e+06, 1331.73, 204287},
+};
+
+/// Short cells in which two joints bend, each more or less evenly.
+void draw_cells(CellGrid& grid, std::mt19937& random) {
+  const auto real = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  const double bend = real(0, 0.25), twist = real(0, 0.03), fast = real(40, 160);
+  double x = 0;
+  for (std::int64_t k = 0; k < kCells; ++k) {
+    FeedCell& cell = grid[k];
+    cell.h = real(0.2, 0.5);
+    cell.x = x;
+    x += cell.h;
+    cell.made_tight = random() % 4 == 0 ? real(0.6, 1) : 1;
+    cell.bound = {};
+    const auto draw = [&](int joint, double unit, CellBound::Sides& sides) {
+      const double middle = real(-1, 1), off = real(0, 0.1);
+      sides.up[joint] = unit * std::max(0.0, middle + off);
+      sides.down[joint] = unit * std::max(0.0, off - middle);
+    };
+    for (const int joint : {0, 3}) {
+      const double unit = joint == 0 ? 1 : 0.003;
+      draw(joint, unit, cell.bound.d1);
+      draw(joint, unit * bend, cell.bound.d2);
+      draw(joint, unit * twist, cell.bound.d3);
+    }
+    cell.bound.rate = cell.bound.d1.up.max(cell.bound.d1.down);
+    for (CellSample& at : cell.at) at.max_b = fast * fast * real(0.9, 1.4);
+    cell.max_b = cell.at[0].max_b;
+  }
+}
+
+Row grant(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto real = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  MadeCells cells(kCells);
+  draw_cells(cells.grid, random);
+  FeedStopMargin margin(cells.model);
+  const int cell = static_cast<int>(real(0, 20));
+  margin.begin(cells.grid, random() % 2 == 0 ? cell + static_cast<int>(real(3, 14)) : kCells);
+  TimePiece time;
+  for (int n = 0; n < 2; ++n) {  // the second is bounded by what the first got
+    time = {};
+    FeedPiece piece;
+    piece.cell = cell + n;
+    time.duration = real(1e-3, 6e-3);
+    time.s0 = cells.grid[piece.cell].x;
+    time.v = real(5, 100);
+    time.a = random() % 3 == 0 ? 0 : real(-1500, 1500);
+    time.k = random() % 2 == 0 ? 0 : real(-100, 100);
+    time.is_tail = random() % 4 == 0;
+    margin.grant(piece, time);
+  }
+  return {time.stop_accel,      time.stop_jerk,      std::min(time.stop_velocity, 1e6),
+          time.fault_accel,     time.fault_jerk,     std::min(time.fault_velocity, 1e6),
+          time.slow_stop_accel, time.slow_fault_jerk};
+}
+
+TEST(FeedStopMarginDrawn, IsWhatItWasWhenTheRowsWereReviewed) {
+  const bool is_printing = std::getenv("MERIDIAN_REGENERATE") != nullptr;
+  unsigned seed = 1;
+  for (const Row& row : kRows) {
+    const Row got = grant(seed);
+    for (std::size_t n = 0; n < row.size(); ++n) {
+      EXPECT_NEAR(got[n], row[n], kShare * std::abs(row[n])) << "seed " << seed << " value " << n;
+    }
+    if (is_printing) {
+      for (std::size_t n = 0; n < got.size(); ++n) {
+        std::printf("%s%.6g", n == 0 ? "    {" : ", ", got[n]);
+      }
+      std::printf("},\n");
+    }
+    ++seed;
+  }
+}
+
+}  // namespace
+}  // namespace meridian::test::feed_stop_margin_drawn
