@@ -78,8 +78,8 @@ def copy_sources(root, tree):
 class Builder:
     """What is built once, by ninja, in `work`: the core as a library, the shared headers, every test."""
 
-    def __init__(self, root, work, jobs):
-        self.root, self.tree, self.work, self.jobs = root, work / "tree", work, jobs
+    def __init__(self, root, work, jobs, has_shared=True):
+        self.root, self.tree, self.work, self.jobs, self.has_shared = root, work / "tree", work, jobs, has_shared
         copy_sources(root, self.tree)
         eigen = next(path for path in ("/usr/include/eigen3", "/usr/local/include/eigen3") if os.path.isdir(path))
         self.includes = [f"-I{self.tree}", f"-I{self.tree}/include", f"-I{self.tree}/tests", "-isystem", eigen]
@@ -92,7 +92,7 @@ class Builder:
         lines = ["rule cxx", f" command = g++ {flags} $level $shared -MMD -MF $out.d -c $in -o $out", " depfile = $out.d",
                  " deps = gcc", "rule header", f" command = g++ {flags} $level -x c++-header -c $in -o $out",
                  "rule archive", " command = rm -f $out && ar rcs $out $in"]
-        for level in ("O0", "O1"):
+        for level in ("O0", "O1") if self.has_shared else ():
             (self.work / level).mkdir(exist_ok=True)
             lines += [f"build {level}/shared.hpp.gch: header shared.hpp", f" level = -{level}"]
         core = self.core_sources()
@@ -113,16 +113,20 @@ class Builder:
     def object_of(self, source):
         return pathlib.Path("objects") / (str(source.relative_to(self.tree)).replace("/", "_") + ".o")
 
+    def shared(self, level):
+        return ["-include", f"{level}/shared.hpp"] if self.has_shared else []
+
     def objects(self, sources, level):
         lines = []
         for source in sources:
-            lines += [f"build {self.object_of(source)}: cxx {source} | {level}/shared.hpp.gch", f" level = -{level}",
-                      f" shared = -include {level}/shared.hpp"]
+            needs = f" | {level}/shared.hpp.gch" if self.has_shared else ""
+            lines += [f"build {self.object_of(source)}: cxx {source}{needs}", f" level = -{level}",
+                      f" shared = {' '.join(self.shared(level))}"]
         return lines
 
     def compile(self, source, target, overlay):
         """Whether `source` compiles with what `overlay` holds before what the tree holds."""
-        command = ["g++", *FLAGS, f"-I{overlay}", f"-I{overlay}/include", *self.includes, "-O0", "-include", "O0/shared.hpp",
+        command = ["g++", *FLAGS, f"-I{overlay}", f"-I{overlay}/include", *self.includes, "-O0", *self.shared("O0"),
                    "-c", str(source), "-o", str(target)]
         return subprocess.run(command, cwd=self.work, capture_output=True, check=False).returncode == 0
 
@@ -188,7 +192,7 @@ class Campaign:
         begin = time.monotonic()
         if not self.run(program):
             raise SystemExit(f"{self.piece.name}: its tests fail without a mutant: {program}")
-        self.limit_s = max(20.0, 20 * (time.monotonic() - begin))
+        self.limit_s = max(10.0, 5 * (time.monotonic() - begin))
 
     def try_mutant(self, number, file, mutant):
         """'caught', 'survived', or None where there is nothing to run."""
@@ -230,6 +234,7 @@ def arguments():
     parser.add_argument("--share", type=float, default=0.9, help="that has to be caught of each piece")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--survivors", action="store_true", help="print the mutants that no test caught")
+    parser.add_argument("--plain-headers", action="store_true", help="precompile none: for pieces that include little")
     parser.add_argument("--table", type=pathlib.Path, default=HERE / "pieces.txt")
     parser.add_argument("--root", type=pathlib.Path, default=HERE.parents[1], help="checkout whose sources are copied")
     parser.add_argument("--work", type=pathlib.Path,
@@ -244,7 +249,7 @@ def main():
               if not options.pieces or any(name in piece.name for name in options.pieces)]
     if not pieces:
         raise SystemExit("no such piece")
-    builder = Builder(options.root.resolve(), options.work.resolve(), options.jobs)
+    builder = Builder(options.root.resolve(), options.work.resolve(), options.jobs, not options.plain_headers)
     builder.prepare(pieces)
     results = []
     print(f"{'piece':60} caught  mutants  share")

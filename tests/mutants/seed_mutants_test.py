@@ -58,7 +58,7 @@ class Mutants(unittest.TestCase):
 class Campaign(unittest.TestCase):
     """Every mutant of the piece above is seeded: the strong test catches all six, the weak one four."""
 
-    def run_on(self, folder, body, checks_root=None):
+    def run_on(self, folder, body):
         root = folder / "root"
         for path, text in (("service/core/toy/limited.cpp", PIECE),
                            ("service/core/toy/limited.hpp", "#pragma once\nint limited(int x);\n"),
@@ -69,7 +69,7 @@ class Campaign(unittest.TestCase):
         table.write_text("# piece and tests\nservice/core/toy/limited tests/unit/toy/limited_test.cpp\n")
         before = {path: path.read_bytes() for path in root.rglob("*") if path.is_file()}
         done = subprocess.run([sys.executable, str(HERE / "seed_mutants.py"), "--root", str(root), "--table", str(table),
-                               "--work", str(folder / "work"), "--survivors"], capture_output=True, text=True, check=False)
+                               "--work", str(folder / "work"), "--survivors", "--plain-headers"], capture_output=True, text=True, check=False)
         self.assertEqual({path: path.read_bytes() for path in root.rglob("*") if path.is_file()}, before)
         return done.returncode, done.stdout + done.stderr
 

@@ -50,7 +50,7 @@ inline JointUse use_at(const MachineModel& model, const PathPiece& path, const P
 
 inline JointVector joints_near(const MachineModel& model, const PathPiece& path, double s) {
   JointVector q = path.joints_begin;
-  for (int n = 0; n <= 8; ++n) q = joints_at(model, path, s * n / 8, q).q;
+  for (int n = 0; n <= 4; ++n) q = joints_at(model, path, s * n / 4, q).q;
   return q;
 }
 
@@ -71,8 +71,8 @@ inline JointUse use_of_motion(const MachineModel& model, const Staging& staged) 
     }
     EXPECT_NEAR(begin.s, last.s, 1e-9 * (1 + last.s)) << n;
     EXPECT_NEAR(begin.ds, last.ds, 1e-6 * (1 + last.ds)) << n;
-    for (int k = 0; k <= 10; ++k) {
-      const PathState state = state_at(time, time.duration * k / 10);
+    for (int k = 0; k <= 4; ++k) {
+      const PathState state = state_at(time, time.duration * k / 4);
       use.take(use_at(model, path, state, joints_near(model, path, state.s)));
     }
     last = state_at(time, time.duration);
@@ -82,10 +82,11 @@ inline JointUse use_of_motion(const MachineModel& model, const Staging& staged) 
   return use;
 }
 
-/// The use by holds or FaultStops that start all along `staged` with all that they may use.
+/// The use by holds or FaultStops that start all along `staged`, at sixty times or more, with all
+/// that they may use.
 inline JointUse use_of_stops(const MachineModel& model, const Staging& staged, bool is_fault_stop) {
   JointUse use;
-  for (int n = 0; n < staged.time_count; ++n) {
+  for (int n = 0; n < staged.time_count; n += 1 + staged.time_count / 60) {
     const TimePiece& time = staged.times[n];
     const PathPiece& path = staged.paths[time.path_index - staged.first_index];
     for (int k = 0; k <= 2; ++k) {
@@ -94,8 +95,8 @@ inline JointUse use_of_stops(const MachineModel& model, const Staging& staged, b
       const StopMargin margin = authority_of(time, kind, begin);
       if (!(margin.jerk > 0)) continue;
       const StopLaw law(begin, margin);
-      for (int m = 0; m <= 16; ++m) {
-        const PathState state = law.at(law.duration() * m / 16.001);
+      for (int m = 0; m <= 12; ++m) {
+        const PathState state = law.at(law.duration() * m / 12.001);
         EXPECT_LE(state.s, path.length + 1e-9) << n;
         const auto near = joints_near(model, path, state.s);
         use.take(use_at(model, path, state, near, is_fault_stop));
