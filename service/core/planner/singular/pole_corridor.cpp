@@ -140,7 +140,8 @@ std::span<const PoleZone> PoleCorridor::find_string(PoleStretch& stretch) noexce
   PolePlace& place = stretch.place;
   auto pieces = string_.find(task, place);
   double reach = kPoleReach_mm;
-  for (int n = 0; n < kShorter && place.is_on_pole && pieces.empty(); ++n) {
+  const auto is_found = [&] { return !pieces.empty() || string_.is_exact_best(); };
+  for (int n = 0; n < kShorter && !is_found() && !may_be_exact(place); ++n) {
     reach *= kShorterShare;
     if (!stretches_.shorten(stretch, reach)) continue;
     lead_to(place);
@@ -162,9 +163,7 @@ void PoleCorridor::settle(PoleStretch& stretch) noexcept {
     if (!pieces.empty()) return know_behind(pieces.back());
     is_exact_best = string_.is_exact_best();
   }
-  const bool leads_exactly =
-      !place.is_on_pole && (place.at_begin == PoleJoin::kExact || !is_off_exact(place));
-  if (!is_exact_best && !leads_exactly) {
+  if (!is_exact_best && !may_be_exact(place)) {
     search_ = Search::kFailed;
     return;
   }
@@ -173,9 +172,10 @@ void PoleCorridor::settle(PoleStretch& stretch) noexcept {
   }
 }
 
-/// Whether the redundant joint is not where the exact way has it at the begin.
-bool PoleCorridor::is_off_exact(const PolePlace& place) const noexcept {
-  return place.at_begin == PoleJoin::kHeld || probes_.distance_at(place.begin) < tolerance_rad_;
+/// Whether the exact way leads along the stretch from where the redundant joint is at its begin.
+bool PoleCorridor::may_be_exact(const PolePlace& place) const noexcept {
+  if (place.is_on_pole || place.at_begin == PoleJoin::kHeld) return false;
+  return place.at_begin == PoleJoin::kExact || probes_.distance_at(place.begin) >= tolerance_rad_;
 }
 
 /// Whether the path meets the pole on the stretch.

@@ -103,11 +103,11 @@ class PoleCorridor {
   void ask(const PolePlace& place) noexcept;
   /// Drives the redundant joint along the stretch, or cuts the spans there.
   void settle(PoleStretch& stretch) noexcept;
-  /// The way of the redundant joint along the stretch, empty: the exact one, or none was found. On
-  /// the pole, where no exact way leads, shorter stretches are tried as well.
+  /// The way of the redundant joint along the stretch, empty: the exact one, or none was found.
+  /// Where no exact way leads, shorter stretches are tried as well.
   [[nodiscard]] std::span<const PoleZone> find_string(PoleStretch& stretch) noexcept;
   void lead_to(PolePlace& place) const noexcept;
-  [[nodiscard]] bool is_off_exact(const PolePlace& place) const noexcept;
+  [[nodiscard]] bool may_be_exact(const PolePlace& place) const noexcept;
   [[nodiscard]] bool is_on_pole(const PoleStretch& stretch) const noexcept;
   void add_cuts(double nearest) noexcept;
   void add_cut(double u) noexcept;
