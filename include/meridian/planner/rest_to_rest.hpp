@@ -30,7 +30,7 @@ struct PlanResult {
   PlanStatus status = PlanStatus::kOk;
   BlockReject reject;
   double axis_deviation_rad = 0;  ///< largest ease of the axis beside the pole
-  Unwinding unwinding;            ///< made ahead of the block, where its turns are not 0
+  Unwinding unwinding;            ///< made ahead of the block, where it is_made()
 };
 
 /// Within this distance of the pole the programmed axis is eased onto the pole: nearer, the turn of
@@ -40,8 +40,9 @@ inline constexpr double kPoleEase_rad = 8e-6;
 /// The plain planner: every block from rest to rest, tip on its line or arc, axis on its great
 /// circle, every joint inside its limits at every override, feed never exceeded.
 ///
-/// Where the redundant joint would leave its travel on the way and the machine's file says how, it
-/// is turned back by whole turns ahead of the block, off the part (PlanResult::unwinding).
+/// Where the redundant joint would leave its travel on the way and the machine's file says how, the
+/// machine goes to another winding or branch ahead of the block, off the part
+/// (PlanResult::unwinding).
 ///
 /// One window per block, without a tail: it ends at rest. The joints of the whole way between two
 /// blocks are checked before anything of it is published. What a block becomes depends on the
@@ -80,7 +81,8 @@ class RestToRestPlanner {
   void look_at(std::span<const ClBlock> ahead, double tip_slack_mm = 0,
                double axis_slack_rad = 0) noexcept;
 
-  /// Who tells how far ways behind a block that ends off the pole carry; nullptr: look_at() does.
+  /// Who says how far solutions behind a block that ends off the pole, or behind a rewind, carry;
+  /// nullptr: look_at() does.
   /// Where it waits for blocks, plan() gives kNoRoom and needs_ahead() is true.
   void ask(PoleLookAhead* foresight) noexcept;
   [[nodiscard]] bool needs_ahead() const noexcept;
@@ -122,10 +124,10 @@ class RestToRestPlanner {
   /// junction() would tell. Only where no block waits for room.
   void continue_at(const Junction& junction) noexcept;
 
-  /// Turns the redundant joint back off the part, where the tool rests, to the best winding that
-  /// `trial` lets pass: in `block` it would come to `beyond`, outside travel. Refused where none
-  /// does, or where the tool cannot leave the part.
-  [[nodiscard]] PlanResult unwind(const ClBlock& block, double beyond, const WindingTrial& trial,
+  /// Rewinds off the part, where the tool rests, to the best winding or branch that `trial` lets
+  /// pass: in `block` the redundant joint would come to `beyond`, outside travel. Refused where
+  /// none does, or where the tool cannot leave the part. kNoRoom as for plan().
+  [[nodiscard]] PlanResult unwind(const ClBlock& block, double beyond, const RewindTrial& trial,
                                   MotionWriter& writer) noexcept;
 
   /// Joints and tool length at the end of what was published.

@@ -3,24 +3,38 @@
 
 #include <cstdint>
 
+#include "meridian/kinematics/joints.hpp"
+
 namespace meridian {
 
-/// An unwinding in the plan: the redundant joint would have left its travel in a block, and is
-/// turned back ahead of it, off the part (UnwindPolicy::kRetract). Units: rad, mm.
+/// A rewind in the plan: a joint would have left its travel in a block, and the machine goes to
+/// another winding or branch ahead of it, off the part (UnwindPolicy::kRetract). Units: rad, mm.
 struct Unwinding {
   std::uint64_t sequence = 0;  ///< block in which the travel would have ended
   std::uint32_t line = 0;      ///< its source line
-  std::int32_t turns = 0;      ///< whole turns of the redundant joint; 0: no unwinding
-  double from_rad = 0;         ///< where it stood
-  double retract_mm = 0;       ///< how far the tool leaves the part
+  std::int32_t joint = -1;     ///< that would have left its travel; -1: no rewind
+  std::int32_t turns = 0;      ///< whole turns of the redundant joint on the branch in force
+  bool is_other_branch = false;
+  double from_rad = 0;    ///< where the redundant joint stood
+  double turn_rad = 0;    ///< by which it turns
+  double retract_mm = 0;  ///< how far the tool leaves the part
+
+  [[nodiscard]] bool is_made() const noexcept { return joint >= 0; }
 };
 
-/// Tells of every winding whether what follows an unwinding keeps travel on it.
-class WindingTrial {
+/// Where a rewind leads: another solution for the pose where the tool rests. Unit: rad.
+struct RewindTarget {
+  JointVector joints{};
+  std::int32_t turns = 0;  ///< whole turns of the redundant joint, on the branch in force
+  bool is_other_branch = false;
+  int branch = 0;  ///< of `joints`
+};
+
+/// Says of every solution whether what follows a rewind keeps travel on it.
+class RewindTrial {
  public:
-  virtual ~WindingTrial() = default;
-  /// With the redundant joint turned by whole `turns` from where it rests.
-  [[nodiscard]] virtual bool fits(int turns) const noexcept = 0;
+  virtual ~RewindTrial() = default;
+  [[nodiscard]] virtual bool fits(const RewindTarget& target) const noexcept = 0;
 };
 
 }  // namespace meridian

@@ -46,9 +46,16 @@ void append_unwindings(std::string& text, const SimulateReport& report, const Ma
   const std::size_t shown = std::min(kMaxReported, report.unwindings.size());
   for (std::size_t n = 0; n < shown; ++n) {
     const Unwinding& one = report.unwindings[n];
-    append(text, "  line %u: %s would leave its travel; from %.3f deg by %+d turns, %.6g mm off\n",
-           one.line, model.joints[redundant_joint(model)].name.c_str(),
-           units::deg_from_rad(one.from_rad), one.turns, one.retract_mm);
+    const char* const redundant = model.joints[redundant_joint(model)].name.c_str();
+    append(text, "  line %u: %s would leave its travel; %s from %.3f deg by ", one.line,
+           limited_spec(model, one.joint).name.c_str(), redundant,
+           units::deg_from_rad(one.from_rad));
+    if (one.is_other_branch) {
+      append(text, "%+.3f deg to the other branch", units::deg_from_rad(one.turn_rad));
+    } else {
+      append(text, "%+d turns", one.turns);
+    }
+    append(text, ", %.6g mm off\n", one.retract_mm);
   }
   if (report.unwinding_count > shown) {
     append(text, "  and %llu more\n", static_cast<Count>(report.unwinding_count - shown));

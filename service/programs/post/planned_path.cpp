@@ -100,12 +100,12 @@ Expected<std::vector<WayPiece>, PostError> PlannedPath::plan(const ClBlock& prog
   if (result.status != PlanStatus::kOk) {
     return tl::make_unexpected(PostError{block.line, reason(result.reject, model_)});
   }
-  if (result.unwinding.turns != 0 && motion_ != BlockMotion::kDrives) {
+  if (result.unwinding.is_made() && motion_ != BlockMotion::kDrives) {
     return tl::make_unexpected(PostError{
         block.line,
-        model_.joints[redundant_joint(model_)].name +
-            " runs out of its travel here and has to be turned back off the part: under "
-            "tool-centre control the tip would follow the turn; --dialect joints writes the "
+        limited_spec(model_, result.unwinding.joint).name +
+            " runs out of its travel here and a rewind off the part is needed: under tool-centre "
+            "control the tip would follow the turn; --dialect joints writes the "
             "rewind, or split the program ahead of this line"});
   }
   std::vector<WayPiece> pieces;

@@ -143,7 +143,8 @@ class SectionCheck {
         continue;
       }
       const auto lines = section_.steps.subspan(n, end + 1 - n);
-      if (const auto back = find_rewind(*from, lines, model_, kRewindClear_mm)) {
+      const RewindLimits limits{kRewindClear_mm, section_.path.begin_tool_length_mm()};
+      if (const auto back = find_rewind(*from, lines, model_, limits)) {
         n += *back;
         from = &section_.steps[n];
         ++report_.rewinds;

@@ -9,13 +9,19 @@
 
 namespace meridian::proof {
 
+struct RewindLimits {
+  double clear_mm = 0;  ///< off the part: nearer nothing may turn
+  double tool_length_mm = 0;
+};
+
 /// Of `steps`, which begin behind `rest`: the last one of a rewind that begins with the first of
-/// them. A rewind takes the tool off the part along its axis, turns the redundant joint by whole
-/// turns with nothing else, and brings the tool back to the same place; its ways there and back are
-/// checked by where their lines end. Nothing where none begins. `clear_mm` off the part the joint
-/// may turn. Proof: tests/unit/proof/rewind_test.cpp.
+/// them. A rewind takes the tool off the part along its axis and brings it back to the same place.
+/// Off the part the redundant joint turns by whole turns with nothing else; or the axis goes to the
+/// pole and back on another branch, with the tip at rest. Its ways are checked by where their lines
+/// end. Nothing where none begins. Proof: tests/unit/proof/rewind_test.cpp.
 [[nodiscard]] std::optional<std::size_t> find_rewind(const ProgramStep& rest,
                                                      std::span<const ProgramStep> steps,
-                                                     const MachineModel& model, double clear_mm);
+                                                     const MachineModel& model,
+                                                     const RewindLimits& limits);
 
 }  // namespace meridian::proof

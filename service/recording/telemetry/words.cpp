@@ -320,13 +320,14 @@ std::string describe(const PoleEase& ease) {
 }
 
 std::string describe(const Unwinding& unwinding) {
+  const std::string by =
+      unwinding.is_other_branch
+          ? fmt::format("{:+.3f} deg to the other branch", units::deg_from_rad(unwinding.turn_rad))
+          : fmt::format("{:+} turns", unwinding.turns);
   return fmt::format(
-      "line {}: the redundant joint would leave its travel; it turns by {:+} turns from {:.3f} "
-      "deg, {} "
-      "mm "
-      "off the part",
-      unwinding.line, unwinding.turns, units::deg_from_rad(unwinding.from_rad),
-      unwinding.retract_mm);
+      "line {}: a rotary joint would leave its travel; the redundant joint turns by {} from {:.3f} "
+      "deg, {} mm off the part",
+      unwinding.line, by, units::deg_from_rad(unwinding.from_rad), unwinding.retract_mm);
 }
 
 std::string describe(const Approach& approach, const MachineModel& model, std::size_t room) {

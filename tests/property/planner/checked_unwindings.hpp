@@ -15,52 +15,94 @@ namespace meridian::test::unwind {
 
 inline constexpr double kLimit = 1 + 1e-6;
 
-/// Checks what was made of `blocks`, the unwindings alone: off along the tool axis, C alone, back.
-/// Returns their number.
+/// An unwinding while its setpoints come: where the tool left, and how far it was off the part.
+struct OpenUnwinding {
+  JointVector rest{};
+  ToolPose begin{Vector3::Zero(), Vector3::UnitZ()};
+  double farthest = 0;
+};
+
+/// C alone by whole turns, and only when the tool is off by the whole way.
+inline void check_turn_on_branch(const MachineModel& model, OpenUnwinding& open,
+                                 const JointVector& before, const JointVector& now) {
+  const int free = redundant_joint(model);
+  const ToolPose pose = forward(model, model.tool_length_mm, now);
+  const double off = (pose.tip - open.begin.tip).dot(open.begin.axis);
+  const double turned = std::abs(now[free] - before[free]);
+  // The setpoint before the first may be a cycle short of the rest: 1 µm.
+  if (turned > 0 && std::abs(std::remainder(now[free] - open.rest[free], kTurn_rad)) > 1e-5) {
+    EXPECT_NEAR(open.farthest, kRetract_mm, 1e-3) << "C turns beside the part";
+    for (int i = 0; i < model.joint_count; ++i) {
+      if (i == free) continue;
+      EXPECT_NEAR(now[i], before[i], 1e-9) << "with C, joint " << i;
+    }
+    return;
+  }
+  open.farthest = std::max(open.farthest, off);
+  EXPECT_LT((pose.tip - open.begin.tip - off * open.begin.axis).norm(), 2e-3);
+  EXPECT_LT(angle_between(pose.axis, open.begin.axis), 1e-4);
+  EXPECT_GT(off, -1e-3);
+}
+
+/// The axis to the pole and back, the tip at rest where the tool is off by the whole way.
+inline void check_turn_to_other_branch(const MachineModel& model, OpenUnwinding& open,
+                                       const JointVector& now) {
+  const ToolPose pose = forward(model, model.tool_length_mm, now);
+  const double off = (pose.tip - open.begin.tip).dot(open.begin.axis);
+  EXPECT_LT((pose.tip - open.begin.tip - off * open.begin.axis).norm(), 2e-3);
+  EXPECT_GT(off, -1e-3);
+  open.farthest = std::max(open.farthest, off);
+  const double leans = angle_between(pose.axis, open.begin.axis);
+  if (leans < 1e-4) return;
+  EXPECT_NEAR(off, kRetract_mm, 1e-3) << "the axis turns beside the part";
+  const Vector3 pole = pole_direction(model);
+  const auto detour = [&](const Vector3& to) {
+    return leans + angle_between(pose.axis, to) - angle_between(open.begin.axis, to);
+  };
+  EXPECT_LT(std::min(detour(pole), detour(-pole)), 1e-5) << "not straight to the pole";
+}
+
+/// The next setpoint is back where the tool left.
+inline void check_end(const MachineModel& model, const OpenUnwinding& open,
+                      const Unwinding& unwinding, const JointVector& now) {
+  const int free = redundant_joint(model);
+  const ToolPose pose = forward(model, model.tool_length_mm, now);
+  EXPECT_LT((pose.tip - open.begin.tip).norm(), 2e-2) << "not where it left";
+  EXPECT_NEAR(open.farthest, kRetract_mm, 1e-3);
+  EXPECT_NEAR(now[free] - open.rest[free], unwinding.turn_rad, 1e-2);
+  if (unwinding.is_other_branch) {
+    EXPECT_GT(std::abs(std::remainder(unwinding.turn_rad, kTurn_rad)), 1) << "no other branch";
+  } else {
+    EXPECT_NEAR(unwinding.turn_rad, unwinding.turns * kTurn_rad, 1e-12);
+    EXPECT_NE(unwinding.turns, 0);
+  }
+}
+
+/// Checks what was made of `blocks`, the unwindings alone. Returns their number.
 inline int check_unwindings(const MachineModel& model, const SmoothTrace& trace,
                             const std::vector<PlanSample>& setpoints) {
-  const int free = redundant_joint(model);
-  int count = 0;
+  std::size_t count = 0;
   bool was_in = false;
-  JointVector rest{};
-  double farthest = 0;
+  OpenUnwinding open;
   for (std::size_t n = 1; n < setpoints.size(); ++n) {
     const auto k = static_cast<std::size_t>(setpoints[n].piece);
+    const JointVector &before = setpoints[n - 1].q, &now = setpoints[n].q;
     const bool is_in =
         trace.times[k].kind == TimeKind::kMove && trace.paths[k].motion == MotionKind::kUnwind;
-    const double length = model.tool_length_mm;
     if (is_in && !was_in) {
-      rest = setpoints[n - 1].q;
-      farthest = 0;
-      ++count;
+      open = {before, forward(model, model.tool_length_mm, before), 0};
+      if (++count > trace.unwindings.size()) return static_cast<int>(count);
     }
-    const ToolPose begin = forward(model, length, rest);
-    const ToolPose pose = forward(model, length, setpoints[n].q);
-    const double off = (pose.tip - begin.tip).dot(begin.axis);
-    if (is_in) {
-      const double turned = std::abs(setpoints[n].q[free] - setpoints[n - 1].q[free]);
-      // The setpoint before the first may be a cycle short of the rest: 1 µm.
-      if (turned > 0 &&
-          std::abs(std::remainder(setpoints[n].q[free] - rest[free], kTurn_rad)) > 1e-5) {
-        EXPECT_NEAR(farthest, kRetract_mm, 1e-3) << "C turns beside the part";
-        for (int i = 0; i < model.joint_count; ++i) {
-          if (i == free) continue;
-          EXPECT_NEAR(setpoints[n].q[i], setpoints[n - 1].q[i], 1e-9) << "with C, joint " << i;
-        }
-      } else {
-        farthest = std::max(farthest, off);
-        EXPECT_LT((pose.tip - begin.tip - off * begin.axis).norm(), 2e-3);
-        EXPECT_LT(angle_between(pose.axis, begin.axis), 1e-4);
-        EXPECT_GT(off, -1e-3);
-      }
+    if (is_in && trace.unwindings[count - 1].is_other_branch) {
+      check_turn_to_other_branch(model, open, now);
+    } else if (is_in) {
+      check_turn_on_branch(model, open, before, now);
     } else if (was_in) {
-      EXPECT_LT((pose.tip - begin.tip).norm(), 2e-2) << "not where it left";
-      EXPECT_NEAR(farthest, kRetract_mm, 1e-3);
-      EXPECT_GT(std::abs(setpoints[n].q[free] - rest[free]), 6);
+      check_end(model, open, trace.unwindings[count - 1], now);
     }
     was_in = is_in;
   }
-  return count;
+  return static_cast<int>(count);
 }
 
 /// Of all programs that were checked: unwindings, and the most of the limits and in tolerances.

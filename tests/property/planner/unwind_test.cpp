@@ -133,7 +133,8 @@ TEST(Unwinding, IsTheSameHoweverTheBlocksArriveAndThePortIsRead) {
 }
 
 TEST(Unwinding, IsRefusedWhereNoWindingCarriesTheBlock) {
-  const MachineModel model = limited(lai_machine(), -100, 100);  // no whole turn inside travel
+  const MachineModel model =
+      limited(lai_machine(), -80, 80);  // no other winding or branch inside travel
   for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
     const auto blocks =
         spiral(5, {3, transition == Transition::kSmooth ? 6.0 : 25.0, false, false});

@@ -42,9 +42,11 @@ TEST(RestToRestPlanner, GivesNoPathIndexTwiceToTwoProgramsOfAnEpoch) {
   }
 }
 
-class LeastTurn final : public WindingTrial {
+class FarTurn final : public RewindTrial {
  public:
-  [[nodiscard]] bool fits(int turns) const noexcept override { return std::abs(turns) < 2; }
+  [[nodiscard]] bool fits(const RewindTarget& target) const noexcept override {
+    return target.turns < -1;
+  }
 };
 
 TEST(RestToRestPlanner, TurnsTheRedundantJointBackToTheBestWindingThatFitsWhatFollows) {
@@ -56,13 +58,14 @@ TEST(RestToRestPlanner, TurnsTheRedundantJointBackToTheBestWindingThatFitsWhatFo
   RestToRestPlanner planner(model);
   JointVector joints{};
   joints[3] = 12;
+  joints[4] = 0.3;  // off the pole
   planner.begin(joints, model.tool_length_mm, 1);
   ClBlock block;
   block.sequence = 7;
-  const PlanResult result = planner.unwind(block, 13, LeastTurn{}, writer);
+  const PlanResult result = planner.unwind(block, 13, FarTurn{}, writer);
   EXPECT_EQ(result.status, PlanStatus::kOk);
-  EXPECT_EQ(result.unwinding.turns, -1) << "three turns back there would be more room";
-  EXPECT_NEAR(planner.joints()[3], 12 - kTurn_rad, 1e-12);
+  EXPECT_EQ(result.unwinding.turns, -3) << "no block is known, and there is the most room";
+  EXPECT_NEAR(planner.joints()[3], 12 - 3 * kTurn_rad, 1e-12);
 }
 
 /// Nobody waits for a block that will not come to hear of one that was refused.

@@ -20,13 +20,16 @@ namespace {
 constexpr double kRetract_mm = 15;
 constexpr double kTravel_deg = 200;
 
-/// A trunnion whose table turns little farther than once.
-MachineModel narrow_machine(UnwindPolicy policy) {
+/// A trunnion whose table turns little farther than once; `is_tilted_both`: its tilt has travel for
+/// either branch.
+MachineModel narrow_machine(UnwindPolicy policy, bool is_tilted_both = false) {
   MachineModel model = test::shipped("trunnion-ac");
   model.joints[redundant_joint(model)].is_endless = false;
   JointLimits& limits = model.joints[redundant_joint(model)].limits;
   limits.travel_min = -units::rad_from_deg(kTravel_deg);
   limits.travel_max = units::rad_from_deg(kTravel_deg);
+  JointLimits& tilt = model.joints[redundant_joint(model) == 3 ? 4 : 3].limits;
+  tilt.travel_min = is_tilted_both ? -tilt.travel_max : 0;
   model.unwind_policy = policy;
   model.unwind_retract_mm = kRetract_mm;
   return model;
@@ -85,12 +88,32 @@ TEST(Rewind, LeavesThePartTurnsCAloneAndComesBackAtTheApproachFeed) {
 }
 
 TEST(Rewind, IsNoPartOfThePathThatTheProgramIsHeldAgainst) {
-  const MachineModel model = narrow_machine(UnwindPolicy::kRetract);
+  for (const bool is_tilted_both : {false, true}) {
+    const MachineModel model = narrow_machine(UnwindPolicy::kRetract, is_tilted_both);
+    const auto program = test::written(round_a_cone(), model);
+    ASSERT_TRUE(program) << program.error().message;
+    const proof::ProgramReport report = checked(program->text, model);
+    EXPECT_TRUE(report.passed()) << proof::to_text(report);
+    EXPECT_EQ(report.rewinds, 1U);
+  }
+}
+
+TEST(Rewind, ToTheOtherBranchTurnsThroughThePoleWithTheTipAtRest) {
+  const MachineModel model = narrow_machine(UnwindPolicy::kRetract, true);
   const auto program = test::written(round_a_cone(), model);
   ASSERT_TRUE(program) << program.error().message;
-  const proof::ProgramReport report = checked(program->text, model);
-  EXPECT_TRUE(report.passed()) << proof::to_text(report);
-  EXPECT_EQ(report.rewinds, 1U);
+  const auto moves = test::read_nc(program->text).moves;
+  double first = 0, last = 0;
+  int at_pole = 0;
+  for (const auto& move : moves) {
+    const auto tilt = move.at.find("A");
+    if (tilt == move.at.end()) continue;
+    if (first == 0) first = tilt->second;
+    last = tilt->second;
+    if (first != 0 && move.is_rapid && std::abs(last) < 1e-4) ++at_pole;
+  }
+  EXPECT_GT(at_pole, 0) << "no rewind through the pole";
+  EXPECT_LT(first * last, 0) << "the same branch";
 }
 
 TEST(Rewind, InThePartIsFound) {

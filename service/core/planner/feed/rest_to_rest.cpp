@@ -12,7 +12,6 @@
 #include "service/core/planner/look_ahead/fault_code.hpp"
 #include "service/core/planner/route/router.hpp"
 #include "service/core/planner/route/staging.hpp"
-#include "service/core/planner/route/unwind_choice.hpp"
 
 namespace meridian {
 namespace {
@@ -96,10 +95,16 @@ struct RestToRestPlanner::Workspace {
   void stage_retraction(const ClBlock& block) noexcept;
   /// Whether `fault` is one that turning the redundant joint back may help.
   [[nodiscard]] bool may_unwind(const PathFault& fault) const noexcept;
-  /// Stages an unwinding from `next`, to a winding that `trial` lets pass, or without one with
-  /// `block` behind it; or tells why that cannot be: `fault` of the block without one.
-  [[nodiscard]] PathFault unwind(const ClBlock& block, const PathFault& fault,
-                                 const WindingTrial* trial) noexcept;
+  /// Stages a rewind from `next`, to a solution that `trial` lets pass, or without one with `block`
+  /// behind it. Without one it returns `fault`, that of the block. Where blocks are
+  /// missing for the answer nothing is meant.
+  [[nodiscard]] PathFault rewind(const ClBlock& block, const PathFault& fault,
+                                 const RewindTrial* trial) noexcept;
+  /// The foresight waits for blocks: nothing is staged.
+  [[nodiscard]] bool awaits_blocks() noexcept {
+    if (router.needs_ahead()) stage_state = Stage::kNeedsAhead;
+    return router.needs_ahead();
+  }
   /// The last motion staged ends `block`.
   void mark_end(const ClBlock& block) noexcept {
     if (staging.path_count == 0) return;
@@ -122,19 +127,30 @@ bool RestToRestPlanner::Workspace::may_unwind(const PathFault& fault) const noex
          fault.joint >= 0 && fault.joint == redundant_joint(model);
 }
 
-PathFault RestToRestPlanner::Workspace::unwind(const ClBlock& block, const PathFault& fault,
-                                               const WindingTrial* trial) noexcept {
+PathFault RestToRestPlanner::Workspace::rewind(const ClBlock& block, const PathFault& fault,
+                                               const RewindTrial* trial) noexcept {
   const PlanCursor rest = next;
   const Staging::Mark mark = staging.mark();
-  const double from = rest.joints[fault.joint];
-  UnwindChoice choice(model.joints[fault.joint].limits, from, fault.value);
-  for (int turns = choice.next(); turns != 0; turns = choice.next()) {
-    if (trial != nullptr && !trial->fits(turns)) continue;
-    if (router.unwind(block, turns, next, staging).kind == PathFault::Kind::kNone) {
+  const double from = rest.joints[redundant_joint(model)];
+  RewindSolutions found = router.find_rewinds(block, {fault, trial != nullptr}, rest);
+  if (awaits_blocks()) return {};
+  for (const RewindSolution& one : found.all()) {
+    if (trial != nullptr && !trial->fits(one.target)) continue;
+    if (!is_fault(router.rewind(block, one.target, next, staging))) {
       ++next.window;
-      result.unwinding = {block.sequence, block.line, turns, from, model.unwind_retract_mm};
+      const RewindTarget& to = one.target;
+      result.unwinding = {block.sequence,
+                          block.line,
+                          fault.joint,
+                          to.turns,
+                          to.is_other_branch,
+                          from,
+                          to.joints[redundant_joint(model)] - from,
+                          model.unwind_retract_mm};
       if (trial != nullptr) return {};
-      if (router.route(block, next, staging).kind == PathFault::Kind::kNone) {
+      const PathFault behind = router.route(block, next, staging);
+      if (awaits_blocks()) return {};
+      if (!is_fault(behind)) {
         ++next.window;
         return {};
       }
@@ -197,18 +213,16 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
     const PlanCursor rest = next;
     const Staging::Mark before = staging.mark();
     fault = router.route(block, next, staging);
+    if (awaits_blocks()) return;
     if (may_unwind(fault)) {
       staging.go_back(before);
       next = rest;
-      fault = unwind(block, fault, nullptr);
+      fault = rewind(block, fault, nullptr);
+      if (stage_state == Stage::kNeedsAhead) return;
     } else {
       count_window(before.times);
     }
     result.axis_deviation_rad = std::max(result.axis_deviation_rad, router.axis_deviation_rad());
-    if (router.needs_ahead()) {
-      stage_state = Stage::kNeedsAhead;
-      return;
-    }
   }
   if (fault.kind == PathFault::Kind::kNone) return mark_end(block);
   RejectCode code = code_of(fault.kind);
@@ -332,16 +346,15 @@ void RestToRestPlanner::look_at(std::span<const ClBlock> ahead, double tip_slack
   workspace_->router.look_at(ahead, {tip_slack_mm, axis_slack_rad});
 }
 
-PlanResult RestToRestPlanner::unwind(const ClBlock& block, double beyond, const WindingTrial& trial,
+PlanResult RestToRestPlanner::unwind(const ClBlock& block, double beyond, const RewindTrial& trial,
                                      MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
   if (w.stage_state == Workspace::Stage::kRefused) return w.result;
   if (w.stage_state != Workspace::Stage::kWhole) {
-    w.staging.clear(w.cursor.path_index);
-    w.next = w.cursor;
-    w.result = {};
+    w.clear_stage();
     PathFault fault{PathFault::Kind::kTravel, redundant_joint(w.model), beyond};
-    if (w.may_unwind(fault)) fault = w.unwind(block, fault, &trial);
+    if (w.may_unwind(fault)) fault = w.rewind(block, fault, &trial);
+    if (w.stage_state == Workspace::Stage::kNeedsAhead) return {PlanStatus::kNoRoom, {}, 0, {}};
     if (fault.kind != PathFault::Kind::kNone) {
       w.refuse(block, code_of(fault.kind), fault.joint, fault.value);
       return w.result;

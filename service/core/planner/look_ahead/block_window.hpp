@@ -56,6 +56,9 @@ class BlockWindow : public PoleLookAhead {
   void ask(const Start& start, std::span<const AheadWay> ways) noexcept override;
   [[nodiscard]] bool look() noexcept override;
   [[nodiscard]] std::span<const AheadWay> ways() const noexcept override { return look_.ways(); }
+  [[nodiscard]] bool is_cut_short() const noexcept override {
+    return !look_.is_settled() && look_.followed() >= most_;
+  }
   /// Whether a question waits for blocks.
   [[nodiscard]] bool is_missing() noexcept { return questions_ > 0 && !look(); }
   /// How many there were.

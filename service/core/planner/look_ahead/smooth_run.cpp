@@ -68,21 +68,32 @@ void SmoothRun::begin_feed(int branch) noexcept {
   supply_ = Supply::kFlowing;
 }
 
-void SmoothRun::go_on(const JointVector& joints, int turns, std::uint64_t path_index,
+void SmoothRun::go_on(const RewindTarget& target, std::uint64_t path_index,
                       std::uint32_t window) noexcept {
-  const double by = turns * kTurn_rad;
-  corridor_.wind(by, travel_.end_of(held_, by));
-  start_.joints = joints;
+  if (target.is_other_branch) {
+    held_.branch = target.branch;
+    corridor_.change_branch(target.branch, travel_.end_from(target.joints, held_));
+  } else {
+    const double by = target.turns * kTurn_rad;
+    corridor_.wind(by, travel_.end_of(held_, by));
+    for (double& value : held_.free) value += by;
+  }
+  start_.joints = target.joints;
   start_.path_index = path_index;
   start_.window = window;
-  for (double& value : held_.free) value += by;
   begin_feed(held_.branch);
   supply_ = Supply::kUnwound;
 }
 
-bool SmoothRun::fits(int turns) const noexcept {
-  const double by = turns * kTurn_rad;
-  return travel_.fits(held_, by) && corridor_.fits_zone(by);
+bool SmoothRun::fits(const RewindTarget& target) const noexcept {
+  if (!target.is_other_branch) {
+    const double by = target.turns * kTurn_rad;
+    return travel_.fits(held_, by) && corridor_.fits_zone(by);
+  }
+  JointSpan span = held_;
+  span.branch = target.branch;
+  return corridor_.may_change_branch() && !held_.is_free_driven &&
+         travel_.fits_from(target.joints, span);
 }
 
 void SmoothRun::take(const ClBlock& block) noexcept {

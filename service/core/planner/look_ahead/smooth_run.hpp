@@ -37,7 +37,7 @@ struct RunStart {
 
 /// A stretch of program without a rest: from blocks through spline and feed to windows in the port.
 /// It starts and ends at rest.
-class SmoothRun : public WindingTrial {
+class SmoothRun : public RewindTrial {
  public:
   enum class Status : std::uint8_t {
     kPublished,    ///< publish_window() alone: a window was published, call again
@@ -45,8 +45,8 @@ class SmoothRun : public WindingTrial {
     kNoRoom,       ///< the port is full, or the cycle may yet run a tail instead of the end: call
                    ///< again
     kDone,         ///< finish() was called and everything is published
-    kUnwind,       ///< published to a rest at which the redundant joint has to be turned back: see
-                   ///< unwind_at(), then go_on()
+    kUnwind,       ///< published to a rest at which a rewind is needed: see unwind_at(), then
+                   ///< go_on()
     kFailed        ///< fault() says why; what lies ahead of it is published to its end
   };
 
@@ -78,13 +78,12 @@ class SmoothRun : public WindingTrial {
 
   /// Where the redundant joint runs out of travel: the block, and `value` outside travel.
   [[nodiscard]] const BlockReject& unwind_at() const noexcept { return unwind_at_; }
-  /// Behind kUnwind: whether the span that would have left travel fits with the redundant joint
-  /// turned by whole `turns`, with the rest of a zone that it lies in.
-  [[nodiscard]] bool fits(int turns) const noexcept override;
-  /// Behind kUnwind: the redundant joint was turned by whole `turns`, the machine rests at `joints`
-  /// in the same place; the names are those of what follows.
-  void go_on(const JointVector& joints, int turns, std::uint64_t path_index,
-             std::uint32_t window) noexcept;
+  /// Behind kUnwind: whether the span that would have left travel fits after a rewind to `target`,
+  /// with the rest of a zone that it lies in.
+  [[nodiscard]] bool fits(const RewindTarget& target) const noexcept override;
+  /// Behind kUnwind: the machine was taken to `target`, where it rests now; the names are those of
+  /// what follows.
+  void go_on(const RewindTarget& target, std::uint64_t path_index, std::uint32_t window) noexcept;
 
   /// Takes the oldest stretch beside the pole on which the axis was moved; false if there is none.
   [[nodiscard]] bool take_ease(PoleEase& out) noexcept { return eases_.take_oldest(out); }

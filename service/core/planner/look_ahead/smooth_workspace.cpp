@@ -159,6 +159,7 @@ SmoothRun::Status SmoothPlanner::Workspace::publish(MotionWriter& writer) noexce
 }
 
 bool SmoothPlanner::Workspace::unwind(MotionWriter& writer) noexcept {
+  if (awaits_ahead()) return false;
   RestToRestPlanner::Junction at = plain.junction();
   at.joints = run.joints();
   at.pose = forward(model, at.tool_length_mm, at.joints);
@@ -174,12 +175,14 @@ bool SmoothPlanner::Workspace::unwind(MotionWriter& writer) noexcept {
   if (result.status != PlanStatus::kOk) return false;
   note(result.unwinding);
   const RestToRestPlanner::Junction behind = plain.junction();
-  run.go_on(behind.joints, result.unwinding.turns, behind.path_index, behind.window);
+  const RewindTarget to{behind.joints, result.unwinding.turns, result.unwinding.is_other_branch,
+                        find_branch(behind)};
+  run.go_on(to, behind.path_index, behind.window);
   return true;
 }
 
 void SmoothPlanner::Workspace::note(const Unwinding& unwinding) noexcept {
-  if (unwinding.turns == 0) return;
+  if (!unwinding.is_made()) return;
   unwindings.push_over_oldest(unwinding);
 }
 

@@ -91,7 +91,7 @@ struct SmoothPlanner::Workspace {
   /// Publishes what is ready of the run.
   [[nodiscard]] SmoothRun::Status publish(MotionWriter& writer) noexcept;
   /// Turns the redundant joint back at the rest that the run came to; false: no room in the port,
-  /// or refused.
+  /// blocks ahead are missing, or refused.
   [[nodiscard]] bool unwind(MotionWriter& writer) noexcept;
   void note(const Unwinding& unwinding) noexcept;
   /// The program begins with what waits; `is_late`: because no more came for too long.
@@ -101,9 +101,11 @@ struct SmoothPlanner::Workspace {
     if (looked_at > 0) raise.note_look({.looked_at = looked_at, .is_late = is_late});
     intake = Intake::kOpen;
   }
-  /// What is planned waits for blocks behind it: they tell which way past the pole carries.
+  /// What is planned waits for blocks behind it: they say which solution carries past the pole, or
+  /// behind a rewind.
   [[nodiscard]] bool awaits_ahead() noexcept {
-    return (is_running() ? run.needs_ahead() : plain.needs_ahead()) && window.is_missing();
+    const bool needs_ahead = plain.needs_ahead() || (is_running() && run.needs_ahead());
+    return needs_ahead && window.is_missing();
   }
   /// Whether `block` is wanted for a look, and not planned at once.
   [[nodiscard]] bool is_looking_at(const ClBlock& block) noexcept {

@@ -10,6 +10,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/tip_over_base.hpp"
+#include "meridian/kinematics/travel.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
@@ -25,13 +26,6 @@ constexpr double kArcStep_rad = 0.1;   // of an arc
 constexpr double kMinPole_rad = 1e-3;
 constexpr int kMaxSteps = 256;  // per block
 constexpr double kBend = 1.5;   // of the joints over the slack: it ends well outside of the pole
-
-/// Whether turning the redundant joint back may help where it runs out of travel.
-bool may_unwind(const MachineModel& model) noexcept {
-  const JointLimits& limits = model.joints[redundant_joint(model)].limits;
-  return model.unwind_policy == UnwindPolicy::kRetract &&
-         limits.travel_max - limits.travel_min >= kTurn_rad;
-}
 
 /// Whether a way that came to `end` may still turn out otherwise.
 bool is_open(AheadEnd end) noexcept { return end == AheadEnd::kNone || end == AheadEnd::kDoubt; }
@@ -131,7 +125,7 @@ void AheadFollower::check(const ToolPose& pose, AheadWay& way) const noexcept {
     if (has_boxes(model_) && is_tool_known_ && is_at_box(all)) way.end = AheadEnd::kDoubt;
     return;
   }
-  way.end = joint == free_ && may_unwind(model_) ? AheadEnd::kUnwinds : AheadEnd::kDoubt;
+  way.end = may_rewind(joint, pose) ? AheadEnd::kUnwinds : AheadEnd::kDoubt;
   if (way.end == AheadEnd::kUnwinds) return;
   const double value = limited_value(model_, all, joint);
   const JointLimits& limits = limited_spec(model_, joint).limits;
@@ -139,6 +133,16 @@ void AheadFollower::check(const ToolPose& pose, AheadWay& way) const noexcept {
   if (!is_branch_certain_ || !(beyond > spread_of(joint, pose))) return;
   way.end = AheadEnd::kLost;
   way.lost = {block_->sequence, block_->line, RejectCode::kTravelBetween, joint, value};
+}
+
+bool AheadFollower::may_rewind(int joint, const ToolPose& pose) const noexcept {
+  if (model_.unwind_policy != UnwindPolicy::kRetract || joint != free_) return false;
+  const JointLimits& limits = model_.joints[free_].limits;
+  if (limits.travel_max - limits.travel_min >= kTurn_rad) return true;
+  auto other = solve(model_, tool_length_mm_, pose, branch_ == 0 ? 1 : 0, joints_);
+  if (other.status != SolveStatus::kOk) return false;
+  wind_into_travel(model_, joints_, other.q);
+  return first_outside(other.q) < 0;
 }
 
 bool AheadFollower::is_at_box(const JointVector& all) const noexcept {

@@ -37,6 +37,8 @@ class AheadFollower {
   /// False: the branch cannot be followed there. `feed_s`: the time that the feed takes there.
   [[nodiscard]] bool put_at(const ToolPose& pose, double feed_s) noexcept;
   void check(const ToolPose& pose, AheadWay& way) const noexcept;
+  /// Whether a rewind may help where `joint` runs out of travel, at `pose`.
+  [[nodiscard]] bool may_rewind(int joint, const ToolPose& pose) const noexcept;
   /// Whether joints stand in a keep-out box or have the tip outside of its box. How far a run
   /// within the slack passes it is not looked at: such a way comes behind the others.
   [[nodiscard]] bool is_at_box(const JointVector& all) const noexcept;

@@ -229,13 +229,17 @@ void Router::look_along_arm(const ClBlock& block, const ToolPose& start, double 
   ways.sort();
 }
 
-/// The blocks behind where `block` begins to be cut, of those that are known.
-std::span<const ClBlock> Router::behind(const ClBlock& block) const noexcept {
+std::span<const ClBlock> Router::from(const ClBlock& block) const noexcept {
   const auto first = std::find_if(ahead_.begin(), ahead_.end(), [&block](const ClBlock& one) {
     return one.sequence == block.sequence;
   });
-  if (first == ahead_.end()) return {};
-  return {block.is_arc ? first : first + 1, ahead_.end()};
+  return {first, ahead_.end()};
+}
+
+/// The blocks behind where `block` begins to be cut, of those that are known.
+std::span<const ClBlock> Router::behind(const ClBlock& block) const noexcept {
+  const std::span<const ClBlock> all = from(block);
+  return all.empty() || block.is_arc ? all : all.subspan(1);
 }
 
 void Router::look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,

@@ -19,12 +19,18 @@ constexpr double kMinShare = 1e-6;
 
 }  // namespace
 
-FreeTravel::Way FreeTravel::walk(const JointSpan& span, double by) const noexcept {
+JointVector FreeTravel::turned(double by) const noexcept {
+  JointVector joints = at_;
+  joints[redundant_joint(model_)] += by;
+  return joints;
+}
+
+FreeTravel::Way FreeTravel::walk(const JointSpan& span, const JointVector& joints,
+                                 double by) const noexcept {
   const int free = redundant_joint(model_);
   const double length = span.band.length;
   Way way;
-  way.end = at_;
-  way.end[free] += by;
+  way.end = joints;
   way.begin = way.low = way.high = way.end[free];
   double step = length / kTravelSteps, last_step = 0, last_slope = 0, bend = 0;
   for (double x = 0; x < length;) {
@@ -65,7 +71,7 @@ std::optional<double> FreeTravel::find_outside(const Way& way) const noexcept {
 }
 
 std::optional<double> FreeTravel::follow(const JointSpan& span) noexcept {
-  const Way way = walk(span, 0);
+  const Way way = walk(span, at_, 0);
   if (!way.is_there) return {};  // the feed finds it too
   const auto outside = find_outside(way);
   if (!outside) at_ = way.end;
@@ -73,7 +79,12 @@ std::optional<double> FreeTravel::follow(const JointSpan& span) noexcept {
 }
 
 bool FreeTravel::fits(const JointSpan& span, double by) const noexcept {
-  const Way way = walk(span, by);
+  const Way way = walk(span, turned(by), by);
+  return way.is_there && way.is_inside && !find_outside(way);
+}
+
+bool FreeTravel::fits_from(const JointVector& joints, const JointSpan& span) const noexcept {
+  const Way way = walk(span, joints, 0);
   return way.is_there && way.is_inside && !find_outside(way);
 }
 

@@ -37,7 +37,14 @@ class FreeTravel {
 
   /// The joints at the end of the next span, the redundant joint turned by `by` before.
   [[nodiscard]] JointVector end_of(const JointSpan& span, double by) const noexcept {
-    return walk(span, by).end;
+    return walk(span, turned(by), by).end;
+  }
+
+  /// The same on another branch, that of `span`, from `joints` at its begin. It is not driven.
+  [[nodiscard]] bool fits_from(const JointVector& joints, const JointSpan& span) const noexcept;
+  [[nodiscard]] JointVector end_from(const JointVector& joints,
+                                     const JointSpan& span) const noexcept {
+    return walk(span, joints, 0).end;
   }
 
  private:
@@ -47,7 +54,11 @@ class FreeTravel {
     bool is_inside = true;                            ///< all joints, at the places looked at
     bool is_there = true;                             ///< a pose out of reach ends the walk
   };
-  [[nodiscard]] Way walk(const JointSpan& span, double by) const noexcept;
+  /// The joints at the begin, the redundant joint turned by `by`.
+  [[nodiscard]] JointVector turned(double by) const noexcept;
+  /// From `joints`; a driven redundant joint is turned by `by`.
+  [[nodiscard]] Way walk(const JointSpan& span, const JointVector& joints,
+                         double by) const noexcept;
   [[nodiscard]] std::optional<double> find_outside(const Way& way) const noexcept;
 
   const MachineModel& model_;

@@ -13,6 +13,7 @@
 #include "meridian/planner/rest_to_rest.hpp"
 #include "service/core/planner/feed/leg_planner.hpp"
 #include "service/core/planner/route/ahead_way.hpp"
+#include "service/core/planner/route/rewind_solutions.hpp"
 #include "service/core/planner/route/staging.hpp"
 #include "service/core/planner/singular/pole_look_ahead.hpp"
 
@@ -82,11 +83,22 @@ class Router {
   /// The way that the last approach() found.
   [[nodiscard]] const Approach& way_in() const noexcept { return way_in_; }
 
-  /// Turns the redundant joint by whole `turns` off the part and comes back to where the tool
-  /// rests, as UnwindPolicy::kRetract says, in the name of `block`, which would leave travel. A
-  /// fault: there is no room for it. The machine has a redundant joint.
-  [[nodiscard]] PathFault unwind(const ClBlock& block, int turns, PlanCursor& cursor,
-                                 Staging& out) noexcept;
+  /// What leaves its travel, and where the blocks are followed from that tell which solution
+  /// carries farthest.
+  struct RewindCause {
+    PathFault fault;
+    bool is_in_block = false;  ///< the tool rests on the way of the block, else where it begins
+  };
+  /// The solutions that a rewind at the rest of `cursor`, ahead of the rest of `block`, may lead
+  /// to, best first. needs_ahead() is true where blocks are missing for the answer. The machine has
+  /// a redundant joint.
+  [[nodiscard]] RewindSolutions find_rewinds(const ClBlock& block, const RewindCause& cause,
+                                             const PlanCursor& cursor) noexcept;
+  /// Turns to `target` off the part and comes back to where the tool rests, as
+  /// UnwindPolicy::kRetract says, in the name of `block`, which would leave travel. A fault: there
+  /// is no room for it.
+  [[nodiscard]] PathFault rewind(const ClBlock& block, const RewindTarget& target,
+                                 PlanCursor& cursor, Staging& out) noexcept;
 
   /// Whether any branch and winding puts the tool on the block's end.
   [[nodiscard]] bool is_reachable(const ClBlock& block, const PlanCursor& cursor) const noexcept;
@@ -142,12 +154,28 @@ class Router {
   void look_along_arm(const ClBlock& block, const ToolPose& start, double tool_length_mm,
                       Ways& ways) const noexcept;
   [[nodiscard]] std::span<const ClBlock> behind(const ClBlock& block) const noexcept;
+  /// `block` and those behind it, of those that are known.
+  [[nodiscard]] std::span<const ClBlock> from(const ClBlock& block) const noexcept;
   using AheadWays = std::array<AheadWay, kMaxWays>;
   [[nodiscard]] AheadWays ahead_of(const Ways& ways) const noexcept;
   static void take_looked(std::span<const AheadWay> found, Ways& ways) noexcept;
   /// The same by what the foresight tells, where there is one.
   void look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,
                    Ways& ways) noexcept;
+  /// Adds the windings of `on`, a solution where the tool rests, that the machine can stand on, the
+  /// nearest first.
+  void add_windings(const RewindTarget& on, const PlanCursor& cursor,
+                    RewindSolutions& found) const noexcept;
+  /// Sorts `found` by the blocks that follow.
+  void look_behind_rewind(const ClBlock& block, const RewindCause& cause, const PlanCursor& cursor,
+                          RewindSolutions& found) noexcept;
+  /// To `target` with the tip at `over`: the axis goes to the pole, the redundant joint turns
+  /// there, and the axis comes back on the other side.
+  [[nodiscard]] PathFault turn_through_pole(const ToolPose& over, const RewindTarget& target,
+                                            const Job& rapid, PlanCursor& cursor,
+                                            Staging& out) noexcept;
+  [[nodiscard]] PathFault turn_on_branch(const RewindTarget& target, const Job& rapid,
+                                         PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] bool is_at_pole(const Vector3& axis) const noexcept;
   [[nodiscard]] PathFault run(const PathPiece& path, const Job& job, double share,
                               PlanCursor& cursor, Staging& out) noexcept;

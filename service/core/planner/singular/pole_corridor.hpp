@@ -70,6 +70,15 @@ class PoleCorridor {
   /// last, and will be at `joints` at its end. What next() gave is not touched, a zone that it lies
   /// in keeps its shape, all zones behind are sought anew on the winding in force now.
   void wind(double by, const JointVector& joints) noexcept;
+  /// The same where it went to `branch`, as may_change_branch() allows.
+  void change_branch(int branch, const JointVector& joints) noexcept {
+    out_course_.branch = branch;
+    wind(0, joints);
+  }
+  /// Whether the redundant joint follows the path where next() is.
+  [[nodiscard]] bool may_change_branch() const noexcept {
+    return !is_in_zone() && !out_course_.is_held;
+  }
 
   /// Whether what is left of the zone that next() is in, if any, stays inside travel with the free
   /// joint turned by `by`.

@@ -9,7 +9,8 @@
 
 namespace meridian {
 
-/// How many blocks ways behind the pole carry, which may have to wait for blocks.
+/// How many blocks ways behind the pole, or behind a rewind, carry, which may have to wait for
+/// blocks.
 ///
 ///     ask() ─▶ look() ─ false: blocks are missing, again when there are more ─▶ ways()
 class PoleLookAhead {
@@ -27,6 +28,8 @@ class PoleLookAhead {
   /// Whether the answer to what was asked last is known.
   [[nodiscard]] virtual bool look() noexcept = 0;
   [[nodiscard]] virtual std::span<const AheadWay> ways() const noexcept = 0;
+  /// Behind look(): ways may carry farther than the answer says, for no more blocks are followed.
+  [[nodiscard]] virtual bool is_cut_short() const noexcept = 0;
 };
 
 }  // namespace meridian

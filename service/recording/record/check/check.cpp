@@ -225,7 +225,7 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
 
   JointCheck joints(model, survey.largest(), options.soft_limits);
   PathCheck tool(model, path, options);
-  UnwindCheck unwinding(model, path.begin_tool_length_mm(), options);
+  UnwindCheck unwinding(model, path, options);
   TipBoxCheck tip_box(model, path, options.soft_limits);
   const bool has_cut = survey.has_cut(options);
   std::uint64_t next_cycle = report.begin_cycle, missing = 0;

@@ -41,8 +41,7 @@ struct CheckOptions {
 ///   every CL vertex in its turn is within tip and axis tolerance together: nothing is missing,
 ///   nothing more is cut, nothing in another order;
 /// * rows of kind `unwind` leave the path along the tool axis alone, turn the redundant joint by
-/// whole
-///   turns off the part, and come back to where they left;
+///   whole turns, or the axis through the pole, off the part, and come back to where they left;
 /// * tip speed never above the programmed feed, times the feed override in force or in force as
 ///   long before as the machine takes to follow; inverse time: tip and axis never faster than the
 ///   fastest block within 5 mm asks for, and no block in less than its time;

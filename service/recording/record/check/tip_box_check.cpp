@@ -13,24 +13,13 @@ TipBoxCheck::TipBoxCheck(const MachineModel& model, const CheckedPath& path,
                          std::span<const LimitsFrom> soft_limits)
     : model_(model),
       path_(path),
+      tool_(path),
       soft_limits_(soft_limits),
       has_boxes_(model.tip_box.is_set),
       tool_length_mm_(path.begin_tool_length_mm()) {
   for (const LimitsFrom& from : soft_limits) {
     has_boxes_ = has_boxes_ || from.limits.tip_box().is_set;
   }
-}
-
-/// The tool of the row's line, where that stands farther on in the path.
-void TipBoxCheck::find_tool(const RecordingRow& row) {
-  if (row.line == line_) return;
-  line_ = row.line;
-  const auto& elements = path_.elements();
-  std::size_t at = element_;
-  while (at < elements.size() && elements[at].line != row.line) ++at;
-  if (at == elements.size()) return;
-  element_ = at;
-  tool_length_mm_ = elements[at].tool_length_mm;
 }
 
 void TipBoxCheck::check(const TipBox& box, const Array3& tip, const RecordingRow& row) {
@@ -47,7 +36,7 @@ void TipBoxCheck::add(const RecordingRow& row, bool is_cut) {
   if (!has_boxes_) return;
   const bool is_approach = row.kind == MotionKind::kApproach && row.line == path_.begin_line();
   if (!is_leading(row.flags) || !(is_cut || is_approach)) return;
-  if (is_cut) find_tool(row);
+  if (is_cut) tool_length_mm_ = tool_.length_at(row.line);
   while (soft_limits_.size() > 1 && soft_limits_[1].cycle <= row.cycle) {
     soft_limits_ = soft_limits_.subspan(1);
   }

@@ -8,6 +8,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/recording/record/check/check_report.hpp"
 #include "service/recording/record/check/checked_path.hpp"
+#include "service/recording/record/check/line_tool.hpp"
 #include "service/recording/record/file/recorded_limits.hpp"
 #include "service/recording/record/file/recording_reader.hpp"
 
@@ -27,16 +28,14 @@ class TipBoxCheck {
   void finish(CheckReport& report) const;
 
  private:
-  void find_tool(const RecordingRow& row);
   void check(const TipBox& box, const Array3& tip, const RecordingRow& row);
 
   const MachineModel& model_;
   const CheckedPath& path_;
+  LineTool tool_;
   std::span<const LimitsFrom> soft_limits_;  ///< the first of them is in force, or the next
   bool has_boxes_;
   double tool_length_mm_;
-  std::size_t element_ = 0;  ///< of the path, whose tool that is
-  std::uint32_t line_ = 0;   ///< last looked for
   JointVector before_{};     ///< joints of the cycle before
   std::uint64_t cycle_ = 0;  ///< of that
   Excess outside_;

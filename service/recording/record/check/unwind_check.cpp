@@ -7,15 +7,13 @@
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/winding.hpp"
+#include "service/recording/record/check/towards_pole.hpp"
 
 namespace meridian::record {
 
-UnwindCheck::UnwindCheck(const MachineModel& model, double tool_length_mm,
+UnwindCheck::UnwindCheck(const MachineModel& model, const CheckedPath& path,
                          const CheckOptions& options)
-    : model_(model),
-      tool_length_(tool_length_mm),
-      options_(options),
-      free_(redundant_joint(model)) {}
+    : model_(model), tool_(path), options_(options), free_(redundant_joint(model)) {}
 
 void UnwindCheck::blame(const char* what, const RecordingRow& row) {
   if (bad_++ > 0) return;
@@ -27,8 +25,19 @@ void UnwindCheck::blame(const char* what, const RecordingRow& row) {
 /// With the redundant joint where it was: what its turns do to the tool is no matter of the line.
 ToolPose UnwindCheck::held_pose(const RecordingRow& row) const {
   JointVector held = row.joints;
-  held[free_] = rest_[free_];
+  held[free_] = held_;
   return forward(model_, tool_length_, held);
+}
+
+bool UnwindCheck::is_on_line(const ToolPose& pose) const {
+  const Vector3 by = pose.tip - begin_.tip;
+  return (by - by.dot(begin_.axis) * begin_.axis).norm() <= options_.tip_tolerance_mm &&
+         angle_between(pose.axis, begin_.axis) <= options_.axis_tolerance_rad;
+}
+
+bool UnwindCheck::is_tilted(const ToolPose& pose) const {
+  return is_on_line({pose.tip, begin_.axis}) &&
+         is_towards_pole(model_, begin_.axis, pose.axis, options_.axis_tolerance_rad);
 }
 
 void UnwindCheck::begin(const RecordingRow& row) {
@@ -36,11 +45,13 @@ void UnwindCheck::begin(const RecordingRow& row) {
   const std::uint64_t missing = has_last_ ? row.cycle - last_.cycle - 1 : kMaxMissing + 1;
   has_rest_ = missing <= kMaxMissing;
   rest_ = missing == 0 ? last_.joints : row.joints;
+  tool_length_ = tool_.length_at(row.line);
   begin_ = forward(model_, tool_length_, rest_);
   missing_ = has_rest_ ? static_cast<double>(missing) : 0;
   off_ = step_ = top_ = slack_ = 0;
   rows_ = 0;
-  has_turned_ = false;
+  has_turned_ = has_tilted_ = false;
+  held_ = free_ >= 0 ? rest_[free_] : 0;
   if (free_ < 0 || model_.unwind_policy != UnwindPolicy::kRetract) {
     blame("the machine file has no unwinding", row);
   }
@@ -57,17 +68,20 @@ void UnwindCheck::check_turn(double off, const RecordingRow& row) {
 }
 
 void UnwindCheck::check(const RecordingRow& row) {
-  const ToolPose pose = held_pose(row);
-  const Vector3 by = pose.tip - begin_.tip;
-  const double off = by.dot(begin_.axis);
+  const ToolPose there = forward(model_, tool_length_, row.joints);
+  if (has_tilted_ && is_on_line(there)) held_ = row.joints[free_];  // on the other branch
+  ToolPose pose = held_pose(row);
+  const bool is_tilting = !is_on_line(pose) && is_tilted(there);
+  if (is_tilting) pose = there;
+  const double off = (pose.tip - begin_.tip).dot(begin_.axis);
   if (rows_ > 0) step_ = std::abs(off - off_) / static_cast<double>(row.cycle - last_.cycle);
   if (rows_++ == 1) slack_ = missing_ * step_;
-  const bool is_on_line = (by - off * begin_.axis).norm() <= options_.tip_tolerance_mm &&
-                          angle_between(pose.axis, begin_.axis) <= options_.axis_tolerance_rad;
-  if (!is_on_line) blame("the tool leaves the line along its axis", row);
+  if (!is_tilting && !is_on_line(pose)) blame("the tool leaves the line along its axis", row);
   if (off < -options_.tip_tolerance_mm - slack_) blame("the tool goes into the part", row);
-  const double turned = std::remainder(row.joints[free_] - rest_[free_], kTurn_rad);
-  if (has_rest_ && std::abs(turned) > options_.axis_tolerance_rad) check_turn(off, row);
+  has_tilted_ |= is_tilting;
+  const double turned = std::remainder(row.joints[free_] - held_, kTurn_rad);
+  const bool turns = is_tilting || std::abs(turned) > options_.axis_tolerance_rad;
+  if (has_rest_ && turns) check_turn(off, row);
   off_ = off;
 }
 

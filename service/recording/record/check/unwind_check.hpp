@@ -5,13 +5,15 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/recording/record/check/check.hpp"
+#include "service/recording/record/check/line_tool.hpp"
 
 namespace meridian::record {
 
 /// Checks the rows of kind `unwind`, in which the tool is off its path on purpose: it leaves the
-/// part along its axis, the redundant joint alone turns by whole turns when it is off by the whole
-/// declared way, it comes back along the same line to where it left. Anything else is a finding,
-/// also any such row on a machine whose file has no unwinding.
+/// part along its axis and comes back along the same line to where it left. When it is off by the
+/// whole declared way the redundant joint alone turns by whole turns; or the axis goes to the pole
+/// and back on another branch, with the tip at rest. Anything else is a finding, also any such row
+/// on a machine whose file has no unwinding.
 ///
 /// The place where the tool rested is the row before. Where up to kMaxMissing rows are missing
 /// there, it is known to the way that the tool made meanwhile: from rest it grows faster, so less
@@ -19,9 +21,8 @@ namespace meridian::record {
 /// line alone is checked. Units: mm, rad. Frame: W.
 class UnwindCheck {
  public:
-  /// Both tolerances of `options` are in force. `tool_length_mm`: any; the tool moves along its
-  /// axis, whatever its length.
-  UnwindCheck(const MachineModel& model, double tool_length_mm, const CheckOptions& options);
+  /// Both tolerances of `options` are in force.
+  UnwindCheck(const MachineModel& model, const CheckedPath& path, const CheckOptions& options);
 
   /// Takes every row of the cut, in order. Returns whether it is one of an unwinding.
   bool add(const RecordingRow& row);
@@ -36,15 +37,21 @@ class UnwindCheck {
   void check_turn(double off, const RecordingRow& row);
   void blame(const char* what, const RecordingRow& row);
   [[nodiscard]] ToolPose held_pose(const RecordingRow& row) const;
+  [[nodiscard]] bool is_on_line(const ToolPose& pose) const;
+  /// Whether the tip stands on the line and the axis is on its way through the pole.
+  [[nodiscard]] bool is_tilted(const ToolPose& pose) const;
 
   const MachineModel& model_;
-  double tool_length_;
+  LineTool tool_;
+  double tool_length_ = 0;  ///< of the unwinding
   CheckOptions options_;
   int free_;
   RecordingRow last_;
   bool has_last_ = false, is_in_ = false;
   bool has_rest_ = false;    ///< where the tool left is known, to `slack_`
   bool has_turned_ = false;  ///< the redundant joint turns or has turned
+  bool has_tilted_ = false;  ///< the axis goes or went through the pole
+  double held_ = 0;          ///< where the redundant joint stands on the line
   JointVector rest_{};       ///< where the tool left, or the first row
   ToolPose begin_{Vector3::Zero(), Vector3::UnitZ()};
   double missing_ = 0;                   ///< rows between rest and the first one

@@ -21,8 +21,8 @@ TEST(Rewind, TurnsTheRedundantJointOffThePartAndComesBack) {
     MachineModel model = lai_machine();
     model.unwind_retract_mm = 30;
     Approached one(model);
-    ASSERT_FALSE(is_fault(
-        one.router.unwind(cut({0, 0, 0}, leaning(0.3, 0.4)), turns, one.cursor, *one.staged)));
+    ASSERT_FALSE(is_fault(one.router.rewind(cut({0, 0, 0}, leaning(0.3, 0.4)), {one.start, turns},
+                                            one.cursor, *one.staged)));
     const auto paths = one.paths();
     ASSERT_EQ(paths.size(), 3U);
     EXPECT_NEAR((to_vector(paths[0].tip_delta) - 30 * leaning(0.3, 0.4)).norm(), 0, kRounding);
@@ -44,15 +44,17 @@ TEST(Rewind, IsRefusedWhereThereIsNoRoomForAllOfIt) {
   MachineModel model = lai_machine();
   model.unwind_retract_mm = 30;
   Approached probe(model);
-  ASSERT_FALSE(is_fault(
-      probe.router.unwind(cut({0, 0, 0}, leaning(0.3, 0.4)), 1, probe.cursor, *probe.staged)));
+  ASSERT_FALSE(is_fault(probe.router.rewind(cut({0, 0, 0}, leaning(0.3, 0.4)), {probe.start, 1},
+                                            probe.cursor, *probe.staged)));
   const PathPiece up = probe.paths()[0];
   const double by = up.joints_end[2] - up.joints_begin[2];
   JointLimits& limits = model.joints[2].limits;
   (by > 0 ? limits.travel_max : limits.travel_min) = up.joints_begin[2] + 0.99 * by;
   Approached one(model);
-  EXPECT_EQ(one.router.unwind(cut({0, 0, 0}, leaning(0.3, 0.4)), 1, one.cursor, *one.staged).kind,
-            PathFault::Kind::kTravel);
+  EXPECT_EQ(
+      one.router.rewind(cut({0, 0, 0}, leaning(0.3, 0.4)), {one.start, 1}, one.cursor, *one.staged)
+          .kind,
+      PathFault::Kind::kTravel);
   EXPECT_EQ(one.staged->path_count, 0);
 }
 

@@ -175,6 +175,7 @@ struct Answers : PoleLookAhead {
   }
   [[nodiscard]] bool look() noexcept override { return is_known; }
   [[nodiscard]] std::span<const AheadWay> ways() const noexcept override { return found; }
+  [[nodiscard]] bool is_cut_short() const noexcept override { return false; }
   Start asked;
   std::vector<AheadWay> found;
   bool is_known = true, prefers_positive = true;

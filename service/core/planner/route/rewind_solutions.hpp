@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/planner/unwinding.hpp"
+#include "service/core/planner/route/ahead_way.hpp"
+
+namespace meridian {
+
+/// A solution that a rewind may lead to, and what is known of it. Units: rad, s.
+struct RewindSolution {
+  RewindTarget target;
+  double time_s = 0;  ///< of the turn at the joints' velocities, and of the blocks that are known
+  int carries = 0;    ///< blocks after which all is inside travel, of those known
+  double room = 0;    ///< see room_of(), where the blocks known do not show the end; else 0
+};
+
+/// Solutions for the pose where the tool rests, best first: those that carry farthest through the
+/// blocks ahead, of these the ones with the most room, then with the least time. Fixed store.
+class RewindSolutions {
+ public:
+  static constexpr std::size_t kMax = 24;
+
+  /// Where the store is full nothing is added.
+  void add(const RewindSolution& one) noexcept {
+    if (count_ < kMax) solutions_[count_++] = one;
+  }
+  [[nodiscard]] std::span<RewindSolution> all() noexcept { return {solutions_.data(), count_}; }
+  /// Equal ones stay as they were added.
+  void sort() noexcept;
+
+ private:
+  std::array<RewindSolution, kMax> solutions_{};
+  std::size_t count_ = 0;
+};
+
+/// What a joint at `at` that runs out of travel upwards (or not) has left that way. A path that
+/// swings back would end at once where less than half a turn is left behind: less than 0 there, the
+/// less the nearer that end is. Unit: rad.
+[[nodiscard]] double room_of(const JointLimits& limits, double at, bool is_upwards) noexcept;
+
+}  // namespace meridian

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// Which solution a rewind leads to: the one that carries farthest through the blocks ahead, then
+/// the nearest. The number of rewinds, and limits and travel of what comes out.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <vector>
+
+#include "property/planner/block_stream.hpp"
+#include "property/planner/checked_unwindings.hpp"
+#include "property/planner/smooth_trace.hpp"
+#include "property/planner/winding_programs.hpp"
+#include "support/draws.hpp"
+#include "support/family_machines.hpp"
+#include "support/machines.hpp"
+#include "support/program_end.hpp"
+
+namespace meridian::test::unwind {
+namespace {
+
+constexpr double kTilt_rad = 0.3;
+
+/// Round a cone: the azimuth goes from one of `corners_deg` to the next.
+std::vector<ClBlock> round_a_cone(const std::vector<double>& corners_deg, double step_deg) {
+  std::vector<ClBlock> blocks;
+  const auto add = [&blocks](double azimuth_deg) {
+    const double at = units::rad_from_deg(azimuth_deg);
+    const double height = 0.01 * static_cast<double>(blocks.size());
+    blocks.push_back(leaning(kTilt_rad, at, {20 * std::cos(at), 20 * std::sin(at), -height}));
+  };
+  add(corners_deg[0]);
+  for (std::size_t n = 1; n < corners_deg.size(); ++n) {
+    const double from = corners_deg[n - 1], by = corners_deg[n] - from;
+    const int steps = static_cast<int>(std::ceil(std::abs(by) / step_deg));
+    for (int k = 1; k <= steps; ++k) add(from + by * k / steps);
+  }
+  number_and_end(blocks);
+  return blocks;
+}
+
+/// Such a program, on a machine where C comes to its end of travel 25° from the begin.
+struct Case {
+  MachineModel model;
+  std::vector<ClBlock> blocks;
+  JointVector start{};
+};
+
+/// Relative to where C begins, in the sense that it goes first: the corners.
+Case at_the_end_of_travel(MachineModel model, double range_deg, std::vector<double> corners_deg,
+                          double step_deg) {
+  const int free = redundant_joint(model);
+  const ClBlock first = round_a_cone({0, 10}, 10)[0], next = round_a_cone({0, 10}, 10)[1];
+  JointVector start = solve_block(model, first, 0);
+  const double sense = solve_block(model, next, 0, start)[free] > start[free] ? 1 : -1;
+  for (double& corner : corners_deg) corner *= sense;
+  Case out{model, round_a_cone(corners_deg, step_deg), start};
+  JointLimits& limits = out.model.joints[free].limits;
+  limits.travel_max = start[free] + units::rad_from_deg(25);
+  limits.travel_min = limits.travel_max - units::rad_from_deg(range_deg);
+  return out;
+}
+
+/// The other rotary joint.
+int tilt_joint(const MachineModel& model) { return redundant_joint(model) == 3 ? 4 : 3; }
+
+/// The same with no travel of the tilt for the other branch.
+Case one_sided(Case one) {
+  const int tilt = tilt_joint(one.model);
+  JointLimits& limits = one.model.joints[tilt].limits;
+  (one.start[tilt] > 0 ? limits.travel_min : limits.travel_max) = 0;
+  return one;
+}
+
+std::vector<MachineModel> machines() {
+  return {limited(lai_machine(), -720, 720), limited(trunnion_machine(), -720, 720),
+          limited(fork_machine(), -720, 720)};
+}
+
+constexpr double step_of(Transition transition) {
+  return transition == Transition::kSmooth ? 4 : 20;
+}
+
+TEST(RewindChoice, LeadsToTheNearestWindingThatCarriesAPathThatTurnsBack) {
+  for (const MachineModel& machine : machines()) {
+    for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+      SCOPED_TRACE(testing::Message() << machine.name << " " << static_cast<int>(transition));
+      // Out of travel, then back by nearly two turns: C has most room three turns back, but not
+      // there.
+      const Case one =
+          one_sided(at_the_end_of_travel(machine, 1440, {0, 40, -660}, step_of(transition)));
+      Found found;
+      const SmoothTrace trace = plan_smooth(one.model, one.blocks, one.start, {transition, 0, 0});
+      check(one.model, trace, one.blocks, one.start, found);
+      if (HasFatalFailure()) return;
+      ASSERT_EQ(trace.unwindings.size(), 1U);
+      EXPECT_EQ(trace.unwindings[0].turns, -1);
+    }
+  }
+}
+
+TEST(RewindChoice, LeadsToTheWindingThatCarriesFarthestWhereNoneCarriesAll) {
+  for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+    SCOPED_TRACE(static_cast<int>(transition));
+    const Case one = one_sided(at_the_end_of_travel(limited(fork_machine(), -720, 720), 1440,
+                                                    {0, 1800}, step_of(transition)));
+    Found found;
+    const SmoothTrace trace = plan_smooth(one.model, one.blocks, one.start, {transition, 0, 0});
+    check(one.model, trace, one.blocks, one.start, found);
+    if (HasFatalFailure()) return;
+    ASSERT_EQ(trace.unwindings.size(), 2U);
+    EXPECT_EQ(trace.unwindings[0].turns, -3) << "no winding carries farther";
+    EXPECT_EQ(trace.unwindings[1].turns, -2) << "the nearest that carries the rest";
+  }
+}
+
+TEST(RewindChoice, LeadsToTheOtherBranchWhereThatIsNearer) {
+  for (const MachineModel& machine : machines()) {
+    for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+      SCOPED_TRACE(testing::Message() << machine.name << " " << static_cast<int>(transition));
+      const Case one = at_the_end_of_travel(machine, 400, {0, 125}, step_of(transition));
+      Found found;
+      const SmoothTrace trace = plan_smooth(one.model, one.blocks, one.start, {transition, 0, 0});
+      check(one.model, trace, one.blocks, one.start, found);
+      if (HasFatalFailure()) return;
+      ASSERT_EQ(trace.unwindings.size(), 1U);
+      EXPECT_TRUE(trace.unwindings[0].is_other_branch);
+      EXPECT_NEAR(std::abs(trace.unwindings[0].turn_rad), kTurn_rad / 2, 1e-6);
+      const int tilt = tilt_joint(one.model);
+      EXPECT_NEAR(trace.joints[tilt], -one.start[tilt], 1e-6);
+    }
+  }
+}
+
+TEST(RewindChoice, StaysOnTheBranchWhereTheTiltHasNoTravelOnTheOther) {
+  for (const MachineModel& machine : machines()) {
+    for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+      SCOPED_TRACE(testing::Message() << machine.name << " " << static_cast<int>(transition));
+      const Case one = one_sided(at_the_end_of_travel(machine, 400, {0, 125}, step_of(transition)));
+      Found found;
+      const SmoothTrace trace = plan_smooth(one.model, one.blocks, one.start, {transition, 0, 0});
+      check(one.model, trace, one.blocks, one.start, found);
+      if (HasFatalFailure()) return;
+      ASSERT_EQ(trace.unwindings.size(), 1U);
+      EXPECT_EQ(trace.unwindings[0].turns, -1);
+    }
+  }
+}
+
+/// All of `blocks`, read every so many; where `stalls_behind` blocks have come and the planner
+/// waits for more it goes on without.
+StreamOutcome stream(const Case& one, Transition transition, std::size_t every,
+                     std::size_t stalls_behind, const std::vector<FeedMark>* replayed = nullptr) {
+  BlockStream out(one.model, one.start, transition, replayed);
+  for (std::size_t n = 0; n < one.blocks.size(); ++n) {
+    if (replayed == nullptr && n == 1) out.stall();  // begins with a block
+    if (!out.offer(one.blocks[n])) break;
+    if (n % every == 0) out.read();
+    if (n >= stalls_behind && out.planner.look() > 0) out.stall();
+  }
+  return out.end();
+}
+
+constexpr std::size_t kNeverStalls = 1000000;
+
+TEST(RewindChoice, IsTheSameHoweverTheBlocksArrive) {
+  for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+    const Case one = one_sided(at_the_end_of_travel(limited(fork_machine(), -720, 720), 1440,
+                                                    {0, 40, -660}, step_of(transition)));
+    const StreamOutcome once = stream(one, transition, 1, kNeverStalls);
+    ASSERT_EQ(once.trace.last.status, PlanStatus::kOk);
+    ASSERT_EQ(once.stuck_at, 0U);
+    ASSERT_EQ(once.trace.unwindings.size(), 1U);
+    EXPECT_EQ(once.trace.unwindings[0].turns, -1);
+    for (const std::size_t every : {7U, 100000U}) {
+      const StreamOutcome again = stream(one, transition, every, kNeverStalls);
+      EXPECT_TRUE(are_same(once.trace, again.trace)) << "read every " << every << " blocks";
+    }
+  }
+}
+
+TEST(RewindChoice, GoesOnWithTheBlocksThatAreThereWhereTheStreamStallsAndIsReplayed) {
+  for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
+    const Case one = one_sided(at_the_end_of_travel(limited(fork_machine(), -720, 720), 1440,
+                                                    {0, 40, -660}, step_of(transition)));
+    const StreamOutcome live = stream(one, transition, 1, 0);
+    ASSERT_EQ(live.trace.last.status, PlanStatus::kOk);
+    ASSERT_EQ(live.trace.unwindings.size(), 2U) << "one more than where the blocks are known";
+    EXPECT_EQ(live.trace.unwindings[0].turns, -3) << "most room where C was going";
+    const StreamOutcome again = stream(one, transition, 1, kNeverStalls, &live.marks);
+    EXPECT_TRUE(are_same(live.trace, again.trace));
+  }
+}
+
+}  // namespace
+}  // namespace meridian::test::unwind
