@@ -12,8 +12,8 @@ namespace meridian {
 struct Unwinding {
   std::uint64_t sequence = 0;  ///< block in which the travel would have ended
   std::uint32_t line = 0;      ///< its source line
-  std::int32_t joint = -1;     ///< that would have left its travel; -1: no rewind
-  std::int32_t turns = 0;      ///< whole turns of the redundant joint on the branch in force
+  std::int16_t turns = 0;      ///< whole turns of the redundant joint on the branch in force
+  std::int8_t joint = -1;      ///< that would have left its travel; -1: no rewind
   bool is_other_branch = false;
   double from_rad = 0;    ///< where the redundant joint stood
   double turn_rad = 0;    ///< by which it turns

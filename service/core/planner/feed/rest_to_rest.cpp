@@ -105,6 +105,14 @@ struct RestToRestPlanner::Workspace {
     if (router.needs_ahead()) stage_state = Stage::kNeedsAhead;
     return router.needs_ahead();
   }
+  /// Stages the way of `block`; nothing is meant where blocks ahead are missing after it.
+  [[nodiscard]] PathFault route(const ClBlock& block) noexcept;
+  /// The same, off its travel with a rewind ahead of it.
+  [[nodiscard]] PathFault route_or_rewind(const ClBlock& block) noexcept;
+  /// What is staged behind the first `pieces_before` pieces is a window.
+  void count_window(int pieces_before) noexcept {
+    if (staging.time_count > pieces_before) ++next.window;
+  }
   /// The last motion staged ends `block`.
   void mark_end(const ClBlock& block) noexcept {
     if (staging.path_count == 0) return;
@@ -141,8 +149,8 @@ PathFault RestToRestPlanner::Workspace::rewind(const ClBlock& block, const PathF
       const RewindTarget& to = one.target;
       result.unwinding = {block.sequence,
                           block.line,
-                          fault.joint,
-                          to.turns,
+                          static_cast<std::int16_t>(to.turns),
+                          static_cast<std::int8_t>(fault.joint),
                           to.is_other_branch,
                           from,
                           to.joints[redundant_joint(model)] - from,
@@ -160,6 +168,23 @@ PathFault RestToRestPlanner::Workspace::rewind(const ClBlock& block, const PathF
   }
   result.unwinding = {};
   return fault;
+}
+
+PathFault RestToRestPlanner::Workspace::route(const ClBlock& block) noexcept {
+  const int before = staging.time_count;
+  const PathFault fault = router.route(block, next, staging);
+  if (!awaits_blocks()) count_window(before);
+  return fault;
+}
+
+PathFault RestToRestPlanner::Workspace::route_or_rewind(const ClBlock& block) noexcept {
+  const PlanCursor rest = next;
+  const Staging::Mark before = staging.mark();
+  const PathFault fault = route(block);
+  if (stage_state == Stage::kNeedsAhead || !may_unwind(fault)) return fault;
+  staging.go_back(before);
+  next = rest;
+  return rewind(block, fault, nullptr);
 }
 
 void RestToRestPlanner::Workspace::stage(const ClBlock& block) noexcept {
@@ -193,9 +218,6 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
   if (is_cut && (block.feed_meaning == FeedMeaning::kNone || !(block.feed > 0))) {
     return refuse(block, RejectCode::kFeed, -1, block.feed);
   }
-  const auto count_window = [this](int pieces_before) {
-    if (staging.time_count > pieces_before) ++next.window;
-  };
   PathFault fault;
   if (next.is_first) {
     fault = first_joints ? router.approach_joints(block, *first_joints, next, staging)
@@ -210,18 +232,8 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
     if (!find_great_circle(next.pose.axis, to_vector(block.axis)).is_unique) {
       return refuse(block, RejectCode::kAxisReversal, -1, 0);
     }
-    const PlanCursor rest = next;
-    const Staging::Mark before = staging.mark();
-    fault = router.route(block, next, staging);
-    if (awaits_blocks()) return;
-    if (may_unwind(fault)) {
-      staging.go_back(before);
-      next = rest;
-      fault = rewind(block, fault, nullptr);
-      if (stage_state == Stage::kNeedsAhead) return;
-    } else {
-      count_window(before.times);
-    }
+    fault = model.unwind_policy == UnwindPolicy::kRetract ? route_or_rewind(block) : route(block);
+    if (stage_state == Stage::kNeedsAhead) return;
     result.axis_deviation_rad = std::max(result.axis_deviation_rad, router.axis_deviation_rad());
   }
   if (fault.kind == PathFault::Kind::kNone) return mark_end(block);
