@@ -26,6 +26,7 @@ TEST(Router, HoldsTheRedundantJointWhereTheAxisStandsStill) {
   EXPECT_EQ(one.cursor.pose.tip, to_vector(block.tip_mm));
   EXPECT_NEAR(one.cursor.joints[3], from[3], 1e-12);
   EXPECT_NEAR(one.cursor.joints[4], from[4], 1e-12);
+  EXPECT_TRUE(one.paths()[0].is_free_driven) << "held, not solved for";
   EXPECT_EQ(one.router.axis_deviation_rad(), 0);
   EXPECT_EQ(one.paths()[0].motion, MotionKind::kCut);
   EXPECT_EQ(one.staged->times[0].feed_mm_per_s, 50);
