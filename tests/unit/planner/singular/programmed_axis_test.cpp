@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -113,6 +114,11 @@ TEST(ProgrammedAxis, FindsTheSharpestChangeOfDirectionOfEveryPart) {
   std::array<double, 1> one{};
   ASSERT_EQ(axis.find_kinks(25, 45, one), 1U) << "inside of the range alone";
   EXPECT_EQ(one[0], 30);
+  ASSERT_EQ(axis.find_kinks(20, 45, one), 1U) << "nor at its begin";
+  EXPECT_EQ(one[0], 30);
+  const std::size_t count = axis.find_kinks(0, 200, all);
+  EXPECT_LT(*std::max_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count)), 70)
+      << "the last end is no kink: nothing is known behind it";
 }
 
 TEST(ProgrammedAxis, HasNoKinkWhereItTurnsEvenly) {
