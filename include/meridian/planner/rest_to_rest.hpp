@@ -84,7 +84,7 @@ class RestToRestPlanner {
   /// Who says how far solutions behind a block that ends off the pole, or behind a rewind, carry;
   /// nullptr: look_at() does.
   /// Where it waits for blocks, plan() gives kNoRoom and needs_ahead() is true.
-  void ask(PoleLookAhead* foresight) noexcept;
+  void ask(PoleLookAhead* look_ahead) noexcept;
   [[nodiscard]] bool needs_ahead() const noexcept;
 
   /// Where a block begins nearer to the pole than `rad` and the redundant joint would leave its

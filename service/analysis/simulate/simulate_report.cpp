@@ -50,7 +50,7 @@ void append_unwindings(std::string& text, const SimulateReport& report, const Ma
     append(text, "  line %u: %s would leave its travel; %s from %.3f deg by ", one.line,
            limited_spec(model, one.joint).name.c_str(), redundant,
            units::deg_from_rad(one.from_rad));
-    if (one.is_other_branch) {
+    if (one.is_other_branch()) {
       append(text, "%+.3f deg to the other branch", units::deg_from_rad(one.turn_rad));
     } else {
       append(text, "%+d turns", one.turns);

@@ -2,6 +2,7 @@
 #include "service/programs/proof/rewind.hpp"
 
 #include <cmath>
+#include <cstdint>
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
@@ -17,11 +18,15 @@ constexpr double kAngle_rad = 1e-6;
 
 /// Where a step stands as seen from where the rewind began.
 struct Lift {
+  enum class Pose : std::uint8_t {
+    kElsewhere,
+    kOnAxis,       ///< there, or with the redundant joint turned back
+    kOtherBranch,  ///< there, with the redundant joint elsewhere
+    kTilted        ///< the tip is on the line, the axis between there and the pole
+  };
   double up_mm = 0;  ///< along the tool axis
   double turn_rad = 0;
-  bool is_on_axis = false;       ///< there, or with the redundant joint turned back
-  bool is_other_branch = false;  ///< there, with the redundant joint elsewhere
-  bool is_tilted = false;        ///< the tip is on the line, the axis on its way to the pole
+  Pose pose = Pose::kElsewhere;
 };
 
 class RewindFinder {
@@ -38,10 +43,10 @@ class RewindFinder {
     const ToolPose there = forward(model_, length_, joints);
     const double turn = joints[free_] - joints_[free_];
     joints[free_] = joints_[free_];
-    Lift held = seen(forward(model_, length_, joints), turn);
-    if (held.is_on_axis) return held;
+    const Lift held = seen(forward(model_, length_, joints), turn);
+    if (held.pose == Lift::Pose::kOnAxis) return held;
     Lift lift = seen(there, turn);
-    lift.is_other_branch = lift.is_on_axis;
+    if (lift.pose == Lift::Pose::kOnAxis) lift.pose = Lift::Pose::kOtherBranch;
     return lift;
   }
 
@@ -50,11 +55,10 @@ class RewindFinder {
     const Vector3 off = at.tip - pose_.tip;
     const double up = off.dot(pose_.axis);
     const bool is_on_line = (off - up * pose_.axis).norm() <= kPlace_mm && up >= -kPlace_mm;
-    Lift lift{up, turn};
-    lift.is_on_axis = is_on_line && angle_between(at.axis, pose_.axis) <= kAngle_rad;
-    lift.is_tilted = is_on_line && !lift.is_on_axis &&
-                     record::is_towards_pole(model_, pose_.axis, at.axis, kAngle_rad);
-    return lift;
+    if (!is_on_line) return {up, turn, Lift::Pose::kElsewhere};
+    if (angle_between(at.axis, pose_.axis) <= kAngle_rad) return {up, turn, Lift::Pose::kOnAxis};
+    const bool is_tilted = record::is_towards_pole(model_, pose_.axis, at.axis, kAngle_rad);
+    return {up, turn, is_tilted ? Lift::Pose::kTilted : Lift::Pose::kElsewhere};
   }
 
   const MachineModel& model_;
@@ -84,13 +88,15 @@ std::optional<std::size_t> find_rewind(const ProgramStep& rest, std::span<const 
         step.kind == ProgramStep::Kind::kRapid || step.kind == ProgramStep::Kind::kCut;
     if (!moves || !step.is_placed || step.tool_pose) return std::nullopt;
     const Lift now = finder.lift_of(step);
-    const bool turns = now.is_tilted || now.is_other_branch != before.is_other_branch ||
+    const bool is_other = now.pose == Lift::Pose::kOtherBranch;
+    const bool turns = now.pose == Lift::Pose::kTilted ||
+                       is_other != (before.pose == Lift::Pose::kOtherBranch) ||
                        std::abs(now.turn_rad - before.turn_rad) > kAngle_rad;
     const bool is_clear =
         before.up_mm >= limits.clear_mm && std::abs(now.up_mm - before.up_mm) < kPlace_mm;
-    if (!(now.is_on_axis || now.is_tilted) || (turns && !is_clear)) return std::nullopt;
+    if (now.pose == Lift::Pose::kElsewhere || (turns && !is_clear)) return std::nullopt;
     if (now.up_mm <= kPlace_mm) {
-      const bool is_rewound = now.is_other_branch || is_whole_turn(now.turn_rad);
+      const bool is_rewound = is_other || is_whole_turn(now.turn_rad);
       return is_rewound ? std::optional(n) : std::nullopt;
     }
     before = now;

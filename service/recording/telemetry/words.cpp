@@ -321,7 +321,7 @@ std::string describe(const PoleEase& ease) {
 
 std::string describe(const Unwinding& unwinding) {
   const std::string by =
-      unwinding.is_other_branch
+      unwinding.is_other_branch()
           ? fmt::format("{:+.3f} deg to the other branch", units::deg_from_rad(unwinding.turn_rad))
           : fmt::format("{:+} turns", unwinding.turns);
   return fmt::format(

@@ -70,7 +70,7 @@ inline void check_end(const MachineModel& model, const OpenUnwinding& open,
   EXPECT_LT((pose.tip - open.begin.tip).norm(), 2e-2) << "not where it left";
   EXPECT_NEAR(open.farthest, kRetract_mm, 1e-3);
   EXPECT_NEAR(now[free] - open.rest[free], unwinding.turn_rad, 1e-2);
-  if (unwinding.is_other_branch) {
+  if (unwinding.is_other_branch()) {
     EXPECT_GT(std::abs(std::remainder(unwinding.turn_rad, kTurn_rad)), 1) << "no other branch";
   } else {
     EXPECT_NEAR(unwinding.turn_rad, unwinding.turns * kTurn_rad, 1e-12);
@@ -93,7 +93,7 @@ inline int check_unwindings(const MachineModel& model, const SmoothTrace& trace,
       open = {before, forward(model, model.tool_length_mm, before), 0};
       if (++count > trace.unwindings.size()) return static_cast<int>(count);
     }
-    if (is_in && trace.unwindings[count - 1].is_other_branch) {
+    if (is_in && trace.unwindings[count - 1].is_other_branch()) {
       check_turn_to_other_branch(model, open, now);
     } else if (is_in) {
       check_turn_on_branch(model, open, before, now);

@@ -185,6 +185,22 @@ TEST_P(MachineSweep, KeepsEveryPromiseOnEveryShippedMachine) {
   for (std::size_t k = 0; k < models.size(); ++k) sweeps[k].print(models[k].name.c_str());
 }
 
+/// Programs that circle fast about the pole just ahead of it: bench comes onto the pole, fork-ca
+/// begins there.
+TEST(MachineSeed, RunsThroughThePoleBehindFastCircles) {
+  struct Drawn {
+    const char* machine;
+    std::uint32_t seed, kind;
+  };
+  for (const Drawn& drawn : {Drawn{"bench", 910380, 1}, Drawn{"fork-ca", 911761, 0}}) {
+    SCOPED_TRACE(std::string(drawn.machine) + ", seed " + std::to_string(drawn.seed));
+    Sweep sweep;
+    run_program(config::load_machine(shipped_file(drawn.machine)), drawn.seed, drawn.kind,
+                Transition::kSmooth, sweep);
+    EXPECT_TRUE(sweep.refused.empty());
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, MachineSweep,
                          testing::Values(Transition::kSmooth, Transition::kExactStop),
                          [](const testing::TestParamInfo<Transition>& transition) {

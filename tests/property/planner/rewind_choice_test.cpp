@@ -85,6 +85,13 @@ constexpr double step_of(Transition transition) {
   return transition == Transition::kSmooth ? 4 : 20;
 }
 
+SmoothTrace checked_plan(const Case& one, Transition transition) {
+  Found found;
+  SmoothTrace trace = plan_smooth(one.model, one.blocks, one.start, {transition, 0, 0});
+  check(one.model, trace, one.blocks, one.start, found);
+  return trace;
+}
+
 TEST(RewindChoice, LeadsToTheNearestWindingThatCarriesAPathThatTurnsBack) {
   for (const MachineModel& machine : machines()) {
     for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
@@ -93,9 +100,7 @@ TEST(RewindChoice, LeadsToTheNearestWindingThatCarriesAPathThatTurnsBack) {
       // there.
       const Case one =
           one_sided(at_the_end_of_travel(machine, 1440, {0, 40, -660}, step_of(transition)));
-      Found found;
-      const SmoothTrace trace = plan_smooth(one.model, one.blocks, one.start, {transition, 0, 0});
-      check(one.model, trace, one.blocks, one.start, found);
+      const SmoothTrace trace = checked_plan(one, transition);
       if (HasFatalFailure()) return;
       ASSERT_EQ(trace.unwindings.size(), 1U);
       EXPECT_EQ(trace.unwindings[0].turns, -1);
@@ -108,9 +113,7 @@ TEST(RewindChoice, LeadsToTheWindingThatCarriesFarthestWhereNoneCarriesAll) {
     SCOPED_TRACE(static_cast<int>(transition));
     const Case one = one_sided(at_the_end_of_travel(limited(fork_machine(), -720, 720), 1440,
                                                     {0, 1800}, step_of(transition)));
-    Found found;
-    const SmoothTrace trace = plan_smooth(one.model, one.blocks, one.start, {transition, 0, 0});
-    check(one.model, trace, one.blocks, one.start, found);
+    const SmoothTrace trace = checked_plan(one, transition);
     if (HasFatalFailure()) return;
     ASSERT_EQ(trace.unwindings.size(), 2U);
     EXPECT_EQ(trace.unwindings[0].turns, -3) << "no winding carries farther";
@@ -123,12 +126,10 @@ TEST(RewindChoice, LeadsToTheOtherBranchWhereThatIsNearer) {
     for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
       SCOPED_TRACE(testing::Message() << machine.name << " " << static_cast<int>(transition));
       const Case one = at_the_end_of_travel(machine, 400, {0, 125}, step_of(transition));
-      Found found;
-      const SmoothTrace trace = plan_smooth(one.model, one.blocks, one.start, {transition, 0, 0});
-      check(one.model, trace, one.blocks, one.start, found);
+      const SmoothTrace trace = checked_plan(one, transition);
       if (HasFatalFailure()) return;
       ASSERT_EQ(trace.unwindings.size(), 1U);
-      EXPECT_TRUE(trace.unwindings[0].is_other_branch);
+      EXPECT_TRUE(trace.unwindings[0].is_other_branch());
       EXPECT_NEAR(std::abs(trace.unwindings[0].turn_rad), kTurn_rad / 2, 1e-6);
       const int tilt = tilt_joint(one.model);
       EXPECT_NEAR(trace.joints[tilt], -one.start[tilt], 1e-6);
@@ -141,9 +142,7 @@ TEST(RewindChoice, StaysOnTheBranchWhereTheTiltHasNoTravelOnTheOther) {
     for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
       SCOPED_TRACE(testing::Message() << machine.name << " " << static_cast<int>(transition));
       const Case one = one_sided(at_the_end_of_travel(machine, 400, {0, 125}, step_of(transition)));
-      Found found;
-      const SmoothTrace trace = plan_smooth(one.model, one.blocks, one.start, {transition, 0, 0});
-      check(one.model, trace, one.blocks, one.start, found);
+      const SmoothTrace trace = checked_plan(one, transition);
       if (HasFatalFailure()) return;
       ASSERT_EQ(trace.unwindings.size(), 1U);
       EXPECT_EQ(trace.unwindings[0].turns, -1);

@@ -24,10 +24,10 @@ double min_time(const BandSpan& span) noexcept {
 
 }  // namespace
 
-SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise, PoleLookAhead* foresight)
+SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise, PoleLookAhead* look_ahead)
     : model_(model),
       raise_(raise),
-      corridor_(model, foresight),
+      corridor_(model, look_ahead),
       passes_(model),
       feed_(model, feed_settings(model)),
       stop_margin_(model),
@@ -70,7 +70,7 @@ void SmoothRun::begin_feed(int branch) noexcept {
 
 void SmoothRun::go_on(const RewindTarget& target, std::uint64_t path_index,
                       std::uint32_t window) noexcept {
-  if (target.is_other_branch) {
+  if (target.is_other_branch()) {
     held_.branch = target.branch;
     corridor_.change_branch(target.branch, travel_.end_from(target.joints, held_));
   } else {
@@ -86,7 +86,7 @@ void SmoothRun::go_on(const RewindTarget& target, std::uint64_t path_index,
 }
 
 bool SmoothRun::fits(const RewindTarget& target) const noexcept {
-  if (!target.is_other_branch) {
+  if (!target.is_other_branch()) {
     const double by = target.turns * kTurn_rad;
     return travel_.fits(held_, by) && corridor_.fits_zone(by);
   }

@@ -50,8 +50,8 @@ class SmoothRun : public RewindTrial {
     kFailed        ///< fault() says why; what lies ahead of it is published to its end
   };
 
-  /// `raise` says what the feed is planned with, `foresight` how far ways behind the pole carry.
-  SmoothRun(const MachineModel& model, FeedRaise& raise, PoleLookAhead* foresight = nullptr);
+  /// `raise` says what the feed is planned with, `look_ahead` how far ways behind the pole carry.
+  SmoothRun(const MachineModel& model, FeedRaise& raise, PoleLookAhead* look_ahead = nullptr);
 
   /// `pole_tolerance_rad`: of the axis beside the pole, smoothing and ease together.
   void begin(const RunStart& start, const BandTolerance& tolerance,
@@ -67,7 +67,7 @@ class SmoothRun : public RewindTrial {
   /// The same one window at a time.
   [[nodiscard]] Status publish_window(MotionWriter& writer) noexcept;
 
-  /// Behind kNeedsBlocks: the blocks are needed by the foresight, take() is not to be called.
+  /// Behind kNeedsBlocks: the blocks are needed by the look-ahead, take() is not to be called.
   [[nodiscard]] bool needs_ahead() const noexcept { return corridor_.needs_ahead(); }
 
   /// Known before kFailed says so: what lies ahead of it has to be published first.
@@ -127,7 +127,7 @@ class SmoothRun : public RewindTrial {
   /// Follows the redundant joint over `span`, the next one. False: it would leave its travel, and
   /// unwind_at() names where; nothing is followed then.
   [[nodiscard]] bool follow(const JointSpan& span) noexcept;
-  /// Whether the feed was told its end.
+  /// Whether the feed knows its end.
   [[nodiscard]] bool is_feed_finished() const noexcept {
     return supply_ == Supply::kHeld || supply_ == Supply::kEnded;
   }

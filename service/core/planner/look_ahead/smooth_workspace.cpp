@@ -175,8 +175,7 @@ bool SmoothPlanner::Workspace::unwind(MotionWriter& writer) noexcept {
   if (result.status != PlanStatus::kOk) return false;
   note(result.unwinding);
   const RestToRestPlanner::Junction behind = plain.junction();
-  const RewindTarget to{behind.joints, result.unwinding.turns, result.unwinding.is_other_branch,
-                        find_branch(behind)};
+  const RewindTarget to{behind.joints, result.unwinding.turns, find_branch(behind)};
   run.go_on(to, behind.path_index, behind.window);
   return true;
 }

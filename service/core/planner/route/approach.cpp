@@ -244,12 +244,12 @@ std::span<const ClBlock> Router::behind(const ClBlock& block) const noexcept {
 
 void Router::look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,
                          Ways& ways) noexcept {
-  if (foresight_ == nullptr) return look_along(block, start, tool_length_mm, ways);
+  if (look_ahead_ == nullptr) return look_along(block, start, tool_length_mm, ways);
   const AheadWays found = ahead_of(ways);
-  foresight_->ask({block.sequence, false, start, tool_length_mm},
-                  {found.data(), static_cast<std::size_t>(ways.count)});
-  needs_ahead_ = !foresight_->look();
-  take_looked(foresight_->ways(), ways);
+  look_ahead_->ask({block.sequence, false, start, tool_length_mm},
+                   {found.data(), static_cast<std::size_t>(ways.count)});
+  needs_ahead_ = !look_ahead_->look();
+  take_looked(look_ahead_->ways(), ways);
 }
 
 Router::AheadWays Router::ahead_of(const Ways& ways) const noexcept {

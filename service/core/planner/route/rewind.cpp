@@ -20,9 +20,10 @@ constexpr int kMaxWindings = RewindSolutions::kMax / 2;  // of a branch
 
 }  // namespace
 
-void Router::add_windings(const RewindTarget& on, const PlanCursor& cursor,
+void Router::add_windings(const RewindTarget& on, int branch_in_force, const PlanCursor& cursor,
                           RewindSolutions& found) const noexcept {
   const int free = redundant_joint(model_);
+  const bool is_other_branch = on.branch != branch_in_force;
   int added = 0;
   const auto add = [&](int turns) {
     RewindSolution one{on};
@@ -31,7 +32,7 @@ void Router::add_windings(const RewindTarget& on, const PlanCursor& cursor,
     if (added == kMaxWindings || first_joint_outside_travel(model_, q, kMargin_rad) >= 0) return;
     if (keep_out_at(model_.keep_out, q) >= 0) return;
     if (tip_axis_outside(model_, cursor.tool_length_mm, q) >= 0) return;
-    if (!on.is_other_branch) one.target.turns = turns;
+    if (!is_other_branch) one.target.turns = turns;
     for (int i = 0; i < model_.joint_count; ++i) {
       if (!model_.joints[i].is_rotary) continue;
       one.time_s += std::abs(q[i] - cursor.joints[i]) / model_.joints[i].limits.velocity;
@@ -39,7 +40,7 @@ void Router::add_windings(const RewindTarget& on, const PlanCursor& cursor,
     found.add(one);
     ++added;
   };
-  if (on.is_other_branch) add(0);
+  if (is_other_branch) add(0);
   if (model_.joints[free].is_endless) return;
   for (int count = 1; count <= kMaxWindings; ++count) {
     add(-count);
@@ -52,14 +53,14 @@ RewindSolutions Router::find_rewinds(const ClBlock& block, const RewindCause& ca
   RewindSolutions found;
   needs_ahead_ = false;
   RewindTarget on{cursor.joints};
-  on.branch = branch_of(cursor.pose, cursor.joints, cursor.tool_length_mm);
-  add_windings(on, cursor, found);
-  on.is_other_branch = true;
-  on.branch = on.branch == 0 ? 1 : 0;
+  const int in_force = branch_of(cursor.pose, cursor.joints, cursor.tool_length_mm);
+  on.branch = in_force;
+  add_windings(on, in_force, cursor, found);
+  on.branch = in_force == 0 ? 1 : 0;
   const auto other = solve(model_, cursor.tool_length_mm, cursor.pose, on.branch, cursor.joints);
   if (other.status == SolveStatus::kOk) {
     on.joints = other.q;
-    add_windings(on, cursor, found);
+    add_windings(on, in_force, cursor, found);
   }
   look_behind_rewind(block, cause, cursor, found);
   return found;
@@ -78,16 +79,16 @@ void Router::look_behind_rewind(const ClBlock& block, const RewindCause& cause,
   }
   const std::span<AheadWay> asked(ways.data(), all.size());
   bool is_cut_short = false;
-  if (foresight_ != nullptr) {
+  if (look_ahead_ != nullptr) {
     // A line is followed from the tool to its end, an arc as a whole where the tool is at its
     // begin.
     const bool is_whole = block.is_arc && !cause.is_in_block && block.sequence > 0;
-    foresight_->ask({is_whole ? block.sequence - 1 : block.sequence, !is_whole, cursor.pose,
-                     cursor.tool_length_mm},
-                    asked);
-    needs_ahead_ = !foresight_->look();
-    std::copy_n(foresight_->ways().begin(), asked.size(), asked.begin());
-    is_cut_short = foresight_->is_cut_short();
+    look_ahead_->ask({is_whole ? block.sequence - 1 : block.sequence, !is_whole, cursor.pose,
+                      cursor.tool_length_mm},
+                     asked);
+    needs_ahead_ = !look_ahead_->look();
+    std::copy_n(look_ahead_->ways().begin(), asked.size(), asked.begin());
+    is_cut_short = look_ahead_->is_cut_short();
   } else {
     AheadLook look(model_);
     look.begin(cursor.tool_length_mm, cursor.pose, slack_, asked);
@@ -120,8 +121,8 @@ PathFault Router::rewind(const ClBlock& block, const RewindTarget& target, PlanC
   const ToolPose over{rest.tip + off * rest.axis, rest.axis};
   PathFault fault = run_lift(make_line(rest, over), rapid, cursor, out);
   if (is_fault(fault)) return fault;
-  fault = target.is_other_branch ? turn_through_pole(over, target, rapid, cursor, out)
-                                 : turn_on_branch(target, rapid, cursor, out);
+  fault = target.is_other_branch() ? turn_through_pole(over, target, rapid, cursor, out)
+                                   : turn_on_branch(target, rapid, cursor, out);
   if (is_fault(fault)) return fault;
   fault = run_lift(make_line(over, rest), job, cursor, out);
   cursor.pose = rest;

@@ -56,7 +56,7 @@ class Router {
 
   /// Who tells of blocks behind those that are routed; nullptr: only look_at() does. What it does
   /// not know yet leaves needs_ahead() true: route() is to be called again then.
-  void ask(PoleLookAhead* foresight) noexcept { foresight_ = foresight; }
+  void ask(PoleLookAhead* look_ahead) noexcept { look_ahead_ = look_ahead; }
   [[nodiscard]] bool needs_ahead() const noexcept { return needs_ahead_; }
 
   /// Axes nearer to the pole than `rad` count as on it, and blocks that pass it nearer run through.
@@ -83,7 +83,7 @@ class Router {
   /// The way that the last approach() found.
   [[nodiscard]] const Approach& way_in() const noexcept { return way_in_; }
 
-  /// What leaves its travel, and where the blocks are followed from that tell which solution
+  /// What leaves its travel, and where the blocks are followed from that show which solution
   /// carries farthest.
   struct RewindCause {
     PathFault fault;
@@ -159,12 +159,12 @@ class Router {
   using AheadWays = std::array<AheadWay, kMaxWays>;
   [[nodiscard]] AheadWays ahead_of(const Ways& ways) const noexcept;
   static void take_looked(std::span<const AheadWay> found, Ways& ways) noexcept;
-  /// The same by what the foresight tells, where there is one.
+  /// The same by what the look-ahead says, where there is one.
   void look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,
                    Ways& ways) noexcept;
   /// Adds the windings of `on`, a solution where the tool rests, that the machine can stand on, the
   /// nearest first.
-  void add_windings(const RewindTarget& on, const PlanCursor& cursor,
+  void add_windings(const RewindTarget& on, int branch_in_force, const PlanCursor& cursor,
                     RewindSolutions& found) const noexcept;
   /// Sorts `found` by the blocks that follow.
   void look_behind_rewind(const ClBlock& block, const RewindCause& cause, const PlanCursor& cursor,
@@ -237,7 +237,7 @@ class Router {
   const MachineModel& model_;
   LegPlanner legs_;
   std::span<const ClBlock> ahead_;
-  PoleLookAhead* foresight_ = nullptr;
+  PoleLookAhead* look_ahead_ = nullptr;
   bool needs_ahead_ = false;  ///< of the last route()
   AheadSlack slack_;
   std::optional<BlockReject> lost_;                   ///< of the last approach

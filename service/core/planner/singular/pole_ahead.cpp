@@ -22,14 +22,14 @@ constexpr std::size_t kMaxWays = AheadLook::kMaxWays;
 
 bool PoleCorridor::foresee(PolePlace& place) noexcept {
   place.ahead = {};
-  if (foresight_ == nullptr || place.at_end != PoleJoin::kExact) return true;
+  if (look_ahead_ == nullptr || place.at_end != PoleJoin::kExact) return true;
   if (asked_u_ != place.known_end) {
     if (returns_to_pole(place)) return true;
     ask(place);
     asked_u_ = place.known_end;
   }
-  if (!foresight_->look()) return false;
-  const auto ways = foresight_->ways();
+  if (!look_ahead_->look()) return false;
+  const auto ways = look_ahead_->ways();
   const auto carries_as_first = [&](const AheadWay& way) {
     return way.carries == ways.front().carries;
   };
@@ -74,7 +74,7 @@ void PoleCorridor::ask(const PolePlace& place) noexcept {
     while (value - kTurn_rad >= limits.travel_min) value -= kTurn_rad;
     for (; value <= limits.travel_max; value += kTurn_rad) add(branch, at.q, value);
   }
-  foresight_->ask({span.sequence, true, pose, tool_length_mm_}, {ways.data(), count});
+  look_ahead_->ask({span.sequence, true, pose, tool_length_mm_}, {ways.data(), count});
 }
 
 }  // namespace meridian

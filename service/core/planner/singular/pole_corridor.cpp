@@ -27,9 +27,9 @@ double held_rate_of(const PoleZone& piece) noexcept {
 
 }  // namespace
 
-PoleCorridor::PoleCorridor(const MachineModel& model, PoleLookAhead* foresight)
+PoleCorridor::PoleCorridor(const MachineModel& model, PoleLookAhead* look_ahead)
     : model_(model),
-      foresight_(foresight),
+      look_ahead_(look_ahead),
       probes_(model),
       stretches_(probes_),
       pending_(kPending) {}

@@ -31,8 +31,8 @@ namespace meridian {
 /// pole_linger_test.cpp.
 class PoleCorridor {
  public:
-  /// `foresight`: blocks behind the spans, nullptr: nothing is known of them.
-  explicit PoleCorridor(const MachineModel& model, PoleLookAhead* foresight = nullptr);
+  /// `look_ahead`: blocks behind the spans, nullptr: nothing is known of them.
+  explicit PoleCorridor(const MachineModel& model, PoleLookAhead* look_ahead = nullptr);
 
   /// Where a path starts, at rest.
   struct Start {
@@ -55,7 +55,7 @@ class PoleCorridor {
 
   /// Returns the next span, nullptr where more are needed; valid until the next call.
   [[nodiscard]] const JointSpan* next() noexcept;
-  /// Whether next() returned nullptr because the foresight waits for blocks: no span is needed.
+  /// Whether next() returned nullptr because the look-ahead waits for blocks: no span is needed.
   [[nodiscard]] bool needs_ahead() const noexcept { return search_ == Search::kNeedsAhead; }
 
   /// Whether no way on was found from where the redundant joint rests. What was handed out stays
@@ -88,7 +88,7 @@ class PoleCorridor {
   /// What the search for stretches has come to.
   enum class Search : std::uint8_t {
     kGoesOn,
-    kNeedsAhead,  ///< the foresight waits for blocks
+    kNeedsAhead,  ///< the look-ahead waits for blocks
     kFailed       ///< there is no way on from where the redundant joint rests
   };
   /// How the joints go on behind zones.
@@ -130,7 +130,7 @@ class PoleCorridor {
   void emit() noexcept;
 
   const MachineModel& model_;
-  PoleLookAhead* foresight_;
+  PoleLookAhead* look_ahead_;
   bool has_pole_ = false;  ///< one that matters
   bool is_exact_ = false;  ///< of the policies the one that never eases
   double tool_length_mm_ = 0, tolerance_rad_ = 0;
@@ -148,7 +148,7 @@ class PoleCorridor {
   std::size_t cut_count_ = 0;
   bool is_finished_ = false;
   Search search_ = Search::kGoesOn;
-  double asked_u_ = -1;  ///< from where the foresight was asked
+  double asked_u_ = -1;  ///< from where the look-ahead was asked
   JointSpan out_;
 };
 

@@ -119,13 +119,14 @@ TEST(LegPlanner, RunsInInverseTimeNoFasterThanItsShare) {
   leg.path = make_line(begin, end);
   leg.share_per_s = 0.4;
   ASSERT_FALSE(is_fault(one.plan(leg, solve(one.model, 110, begin, 0, {}).q)));
-  double most = 0;
+  double fastest = 0;
   for (int n = 0; n < one.staged->time_count; ++n) {
     const TimePiece& time = one.staged->times[n];
-    for (int k = 0; k <= 4; ++k) most = std::max(most, state_at(time, k * time.duration / 4).ds);
+    for (int k = 0; k <= 4; ++k)
+      fastest = std::max(fastest, state_at(time, k * time.duration / 4).ds);
   }
-  EXPECT_LE(most, 0.4 * leg.path.length);
-  EXPECT_GT(most, 0.399 * leg.path.length);
+  EXPECT_LE(fastest, 0.4 * leg.path.length);
+  EXPECT_GT(fastest, 0.399 * leg.path.length);
   EXPECT_GT(duration_of(*one.staged), 2.5);
 }
 

@@ -47,16 +47,16 @@ TEST(PoleCorridor, GoesAShorterWayInsideTheTolerance) {
   EXPECT_LE(way.farthest_rad, kTolerance_rad);
   EXPECT_LT(way.jump, 1e-7);
   EXPECT_LT(way.jump_d1, 1e-5);
-  double told = 0;
+  double reported = 0;
   for (const JointSpan& span : handed.out) {
     if (!span.is_free_driven) continue;
-    told = std::max(told, span.axis_deviation_rad);
+    reported = std::max(reported, span.axis_deviation_rad);
     EXPECT_EQ(span.reason, EaseReason::kThrough);
     EXPECT_GT(span.band.u0, 60 - 40);
     EXPECT_LT(span.band.u0, 60 + 40);
   }
-  EXPECT_GE(told, way.farthest_rad * (1 - 1e-3));
-  EXPECT_LE(told, kTolerance_rad);
+  EXPECT_GE(reported, way.farthest_rad * (1 - 1e-3));
+  EXPECT_LE(reported, kTolerance_rad);
   EXPECT_NE(handed.out.back().branch, handed.out.front().branch) << "out on the other branch";
 }
 

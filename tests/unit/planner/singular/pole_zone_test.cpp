@@ -55,7 +55,7 @@ TEST(PoleTime, GivesAQuinticWithItsDerivativesByU) {
   }
 }
 
-/// Joints that stand still but for joint `i`, which moves by u as told.
+/// Joints that stand still but for joint `i`, which moves by u as asked.
 Joints<Jet<3>> moving(int i, double d1, double d2, double d3) {
   Joints<Jet<3>> q{};
   q[static_cast<std::size_t>(i)] = Jet<3>::from_derivatives({0.5, d1, d2, d3});
