@@ -25,13 +25,8 @@ std::vector<ClBlock> draw_program(std::uint64_t seed) {
   const double swing = draw.log_uniform(1e-4, 2e-2);
   std::vector<ClBlock> blocks;
   for (int n = 0; n <= count; ++n) {
-    ClBlock block;
-    block.sequence = static_cast<std::uint64_t>(n);
-    block.tip_mm = to_array(tip);
-    block.axis = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
-                  std::cos(tilt)};
+    ClBlock block = test::cut_block(n, {tip, test::tilted(tilt, azimuth)});
     block.feed = feed;
-    block.feed_meaning = FeedMeaning::kTip;
     blocks.push_back(block);
     bend = 0.8 * bend + draw.uniform(-0.06, 0.06);
     const double turn = draw.chance(corner) ? draw.uniform(-2, 2) : bend;
@@ -78,15 +73,8 @@ std::vector<ClBlock> draw_corners(std::uint64_t seed) {
   double tilt = draw.uniform(0.15, 0.5), azimuth = draw.uniform(-3, 3);
   std::vector<ClBlock> blocks;
   for (int n = 0; n <= count; ++n) {
-    ClBlock block;
-    block.sequence = static_cast<std::uint64_t>(n);
-    block.line = static_cast<std::uint32_t>(n + 1);
-    block.kind = BlockKind::kCut;
-    block.tip_mm = to_array(tip);
-    block.axis = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
-                  std::cos(tilt)};
+    ClBlock block = test::cut_block(n, {tip, test::tilted(tilt, azimuth)});
     block.feed = feed;
-    block.feed_meaning = FeedMeaning::kTip;
     blocks.push_back(block);
     const double turn = draw.uniform(1.05, 3.14) * (draw.chance(0.5) ? 1 : -1);
     way = Eigen::AngleAxisd(turn, Vector3(0.3 * std::sin(1.0 * n), 0, 1).normalized()) * way;

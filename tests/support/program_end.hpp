@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -8,6 +9,11 @@
 #include "meridian/path/cl_block.hpp"
 
 namespace meridian::test {
+
+/// The axis `tilt` off +z towards `azimuth`. Unit: rad.
+[[nodiscard]] inline Vector3 tilted(double tilt, double azimuth) {
+  return {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)};
+}
 
 /// Block `n` of a program, in line n + 1: a cut to `pose` at 50 mm/s of the tip.
 [[nodiscard]] inline ClBlock cut_block(int n, const ToolPose& pose) {

@@ -9,13 +9,10 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
 #include "support/machines.hpp"
+#include "support/program_end.hpp"
 
 /// Blocks, and a planner from rest to rest that they are given to one by one.
 namespace meridian::test::rest_to_rest {
-
-inline Vector3 tilted(double tilt, double azimuth) {
-  return {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)};
-}
 
 inline ClBlock block_of(BlockKind kind, std::uint64_t sequence) {
   ClBlock block;

@@ -19,13 +19,13 @@ namespace {
 
 TEST(Approach, LeadsOffThePartAcrossAndDownAtApproachFeed) {
   Approached one(lai_machine());
-  const ClBlock block = cut({80, 20, 10}, leaning(0.2, 2));
+  const ClBlock block = cut({80, 20, 10}, tilted(0.2, 2));
   ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
   const auto paths = one.paths();
   ASSERT_EQ(paths.size(), 3U);
-  EXPECT_NEAR((to_vector(paths[0].tip_delta) - 50 * leaning(0.3, 0.4)).norm(), 0, kRounding);
+  EXPECT_NEAR((to_vector(paths[0].tip_delta) - 50 * tilted(0.3, 0.4)).norm(), 0, kRounding);
   EXPECT_EQ(paths[1].kind, PathKind::kJoint);
-  EXPECT_NEAR((to_vector(paths[2].tip_delta) + 50 * leaning(0.2, 2)).norm(), 0, kRounding);
+  EXPECT_NEAR((to_vector(paths[2].tip_delta) + 50 * tilted(0.2, 2)).norm(), 0, kRounding);
   JointVector before = one.start;
   for (const PathPiece& path : paths) {
     EXPECT_EQ(path.motion, MotionKind::kApproach);
@@ -42,7 +42,7 @@ TEST(Approach, LeadsOffThePartAcrossAndDownAtApproachFeed) {
 
 TEST(Approach, IsDescribed) {
   Approached one(lai_machine());
-  const ClBlock block = cut({80, 20, 10}, leaning(0.2, 2));
+  const ClBlock block = cut({80, 20, 10}, tilted(0.2, 2));
   ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
   const Approach& way = one.router.way_in();
   EXPECT_TRUE(way.is_planned);
@@ -63,7 +63,7 @@ TEST(Approach, IsDescribed) {
 
 TEST(Approach, MovesTheJointsAloneWhereItIsNearby) {
   Approached one(lai_machine());
-  const ClBlock block = cut({0.0005, 0, 0}, leaning(0.3, 0.4));
+  const ClBlock block = cut({0.0005, 0, 0}, tilted(0.3, 0.4));
   ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
   ASSERT_EQ(one.paths().size(), 1U);
   EXPECT_EQ(one.paths()[0].kind, PathKind::kJoint);
@@ -75,7 +75,7 @@ TEST(Approach, RetractsAsFarAsTravelAllows) {
   MachineModel model = lai_machine();
   Approached probe(model);
   ASSERT_FALSE(is_fault(
-      probe.router.approach(cut({80, 20, 10}, leaning(0.2, 2)), probe.cursor, *probe.staged)));
+      probe.router.approach(cut({80, 20, 10}, tilted(0.2, 2)), probe.cursor, *probe.staged)));
   const PathPiece up = probe.paths()[0];
   for (int i = 0; i < 3; ++i) {
     MachineModel narrow = model;
@@ -85,7 +85,7 @@ TEST(Approach, RetractsAsFarAsTravelAllows) {
     (by > 0 ? limits.travel_max : limits.travel_min) = up.joints_begin[i] + 0.4 * by;
     Approached one(narrow);
     const PathFault fault =
-        one.router.retract(cut({0, 0, 0}, leaning(0.3, 0.4)), one.cursor, *one.staged);
+        one.router.retract(cut({0, 0, 0}, tilted(0.3, 0.4)), one.cursor, *one.staged);
     ASSERT_FALSE(is_fault(fault));
     ASSERT_EQ(one.paths().size(), 1U);
     EXPECT_NEAR(one.paths()[0].length, 20, 1e-6) << "joint " << i;
@@ -114,11 +114,10 @@ TEST(Approach, RetractsAsFarAsTheTipBoxAllows) {
 
 TEST(Approach, GoesOnFromWhereTheToolWasRetracted) {
   Approached one(lai_machine());
-  const ClBlock tool = cut({0, 0, 0}, leaning(0.3, 0.4)),
-                block = cut({80, 20, 10}, leaning(0.2, 2));
+  const ClBlock tool = cut({0, 0, 0}, tilted(0.3, 0.4)), block = cut({80, 20, 10}, tilted(0.2, 2));
   ASSERT_FALSE(is_fault(one.router.retract(tool, one.cursor, *one.staged)));
   EXPECT_TRUE(one.cursor.has_retracted);
-  EXPECT_NEAR((one.cursor.pose.tip - 50 * leaning(0.3, 0.4)).norm(), 0, kRounding);
+  EXPECT_NEAR((one.cursor.pose.tip - 50 * tilted(0.3, 0.4)).norm(), 0, kRounding);
   const double up_s = duration_of(*one.staged);
   ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
   ASSERT_EQ(one.paths().size(), 3U) << "up once";
@@ -135,14 +134,13 @@ TEST(Approach, GoesOnFromWhereTheToolWasRetracted) {
 
 TEST(Approach, LiftsAToolThatIsLongerAsFarAsTheOther) {
   Approached one(lai_machine());
-  const ClBlock tool = cut({0, 0, 0}, leaning(0.3, 0.4)),
-                block = cut({80, 20, 10}, leaning(0.2, 2));
+  const ClBlock tool = cut({0, 0, 0}, tilted(0.3, 0.4)), block = cut({80, 20, 10}, tilted(0.2, 2));
   ASSERT_FALSE(is_fault(one.router.retract(tool, one.cursor, *one.staged)));
   one.cursor.tool_length_mm += 30;
   one.cursor.pose = forward(one.model, one.cursor.tool_length_mm, one.cursor.joints);
   ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
   ASSERT_EQ(one.paths().size(), 4U);
-  EXPECT_NEAR((to_vector(one.paths()[1].tip_delta) - 30 * leaning(0.3, 0.4)).norm(), 0, 1e-6);
+  EXPECT_NEAR((to_vector(one.paths()[1].tip_delta) - 30 * tilted(0.3, 0.4)).norm(), 0, 1e-6);
   EXPECT_NEAR(one.router.way_in().lift, 30, 1e-6);
   EXPECT_LT(one.away_from(block), kRounding);
 }
@@ -150,8 +148,7 @@ TEST(Approach, LiftsAToolThatIsLongerAsFarAsTheOther) {
 TEST(Approach, IsRefusedWhereALongerToolCannotBeLifted) {
   MachineModel model = lai_machine();
   Approached probe(model);
-  const ClBlock tool = cut({0, 0, 0}, leaning(0.3, 0.4)),
-                block = cut({80, 20, 10}, leaning(0.2, 2));
+  const ClBlock tool = cut({0, 0, 0}, tilted(0.3, 0.4)), block = cut({80, 20, 10}, tilted(0.2, 2));
   ASSERT_FALSE(is_fault(probe.router.retract(tool, probe.cursor, *probe.staged)));
   const JointVector up = probe.cursor.joints;
   const double by = up[2] - probe.start[2];
@@ -192,8 +189,8 @@ TEST(Approach, GoesToJointsThatAreKnownStraight) {
 
 TEST(Approach, TakesTheBranchAndWindingThatIsNearest) {
   for (const int branch : {0, 1}) {
-    Approached one(lai_machine(), {{0, 0, 0}, leaning(0.3, 0.4)}, branch);
-    const ClBlock block = cut({80, 20, 10}, leaning(0.3, 0.6));
+    Approached one(lai_machine(), {{0, 0, 0}, tilted(0.3, 0.4)}, branch);
+    const ClBlock block = cut({80, 20, 10}, tilted(0.3, 0.6));
     ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
     EXPECT_EQ(one.router.way_in().branch, branch);
     EXPECT_NEAR(std::abs(one.cursor.joints[3] - one.start[3]), 0.2, 0.01);
@@ -203,7 +200,7 @@ TEST(Approach, TakesTheBranchAndWindingThatIsNearest) {
 TEST(Approach, KeepsHalfATurnOffTheEndOfTravelWhereItCan) {
   MachineModel model = lai_machine();
   Approached probe(model);
-  const ClBlock block = cut({80, 20, 10}, leaning(0.3, 0.6));
+  const ClBlock block = cut({80, 20, 10}, tilted(0.3, 0.6));
   ASSERT_FALSE(is_fault(probe.router.approach(block, probe.cursor, *probe.staged)));
   const double at = probe.cursor.joints[3];
   model.joints[3].limits.travel_max = at + 0.05;
@@ -217,7 +214,7 @@ TEST(Approach, TakesTheWayThatTheBlocksBehindItAllow) {
   // Round by 300 degrees: only from one end of travel on.
   std::vector<ClBlock> blocks;
   for (int n = 0; n <= 30; ++n) {
-    blocks.push_back(cut({80.0 + n, 20, 10}, leaning(0.3, 0.6 + n * std::numbers::pi / 18)));
+    blocks.push_back(cut({80.0 + n, 20, 10}, tilted(0.3, 0.6 + n * std::numbers::pi / 18)));
     blocks.back().sequence = 7 + static_cast<unsigned>(n);
   }
   MachineModel model = lai_machine();
@@ -237,13 +234,13 @@ TEST(Approach, TakesTheWayThatTheBlocksBehindItAllow) {
 TEST(Approach, SaysWhyThereIsNone) {
   Approached one(lai_machine());
   const PathFault tilt =
-      one.router.approach(cut({0, 0, 0}, leaning(1.3, 0)), one.cursor, *one.staged);
+      one.router.approach(cut({0, 0, 0}, tilted(1.3, 0)), one.cursor, *one.staged);
   EXPECT_EQ(tilt.kind, PathFault::Kind::kTravel);
   EXPECT_EQ(tilt.joint, 4);
   EXPECT_EQ(one.staged->path_count, 0);
   EXPECT_EQ(one.cursor.joints, one.start);
   const PathFault far =
-      one.router.approach(cut({5000, 0, 0}, leaning(0.3, 0)), one.cursor, *one.staged);
+      one.router.approach(cut({5000, 0, 0}, tilted(0.3, 0)), one.cursor, *one.staged);
   EXPECT_EQ(far.kind, PathFault::Kind::kTravel);
   EXPECT_LT(far.joint, 3);
 }

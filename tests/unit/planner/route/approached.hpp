@@ -9,11 +9,10 @@ namespace meridian::test::approach {
 
 using router::cut;
 using router::kRounding;
-using router::leaning;
 
 /// A machine that stands at a pose, 50 mm of clearance.
 struct Approached : router::Routed {
-  explicit Approached(const MachineModel& m, const ToolPose& pose = {{0, 0, 0}, leaning(0.3, 0.4)},
+  explicit Approached(const MachineModel& m, const ToolPose& pose = {{0, 0, 0}, tilted(0.3, 0.4)},
                       int branch = 0)
       : Routed(m) {
     stand_at(pose, branch);

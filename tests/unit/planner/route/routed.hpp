@@ -13,16 +13,13 @@
 #include "meridian/kinematics/winding.hpp"
 #include "service/core/planner/route/router.hpp"
 #include "support/machines.hpp"
+#include "support/program_end.hpp"
 #include "unit/planner/feed/staged_motion.hpp"
 
 /// Blocks, and a router whose machine rests somewhere.
 namespace meridian::test::router {
 
 inline constexpr double kRounding = 1e-9;
-
-inline Vector3 leaning(double tilt, double azimuth) {
-  return {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)};
-}
 
 inline ClBlock cut(const Vector3& tip, const Vector3& axis, double feed = 50) {
   ClBlock block;

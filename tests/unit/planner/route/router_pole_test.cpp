@@ -18,7 +18,7 @@ namespace {
 
 TEST(Router, GoesToThePoleWithTheRedundantJointAtRest) {
   Routed one(bench_machine());
-  one.stand_at({{0, 0, 0}, leaning(0.3, 0.4)});
+  one.stand_at({{0, 0, 0}, tilted(0.3, 0.4)});
   const JointVector from = one.cursor.joints;
   ASSERT_FALSE(is_fault(one.route(cut({40, 0, 0}, Vector3::UnitZ()))));
   one.expect_joined(from);
@@ -29,10 +29,10 @@ TEST(Router, GoesToThePoleWithTheRedundantJointAtRest) {
 
 TEST(Router, TurnsTheRedundantJointOnThePoleAndThenLeavesIt) {
   Routed one(bench_machine());
-  one.stand_at({{0, 0, 0}, leaning(0.3, 0)});
+  one.stand_at({{0, 0, 0}, tilted(0.3, 0)});
   ASSERT_FALSE(is_fault(one.route(cut({40, 0, 0}, Vector3::UnitZ()))));
   const JointVector on_pole = one.cursor.joints;
-  const ClBlock block = cut({60, 0, 0}, leaning(0.3, 1.2));
+  const ClBlock block = cut({60, 0, 0}, tilted(0.3, 1.2));
   ASSERT_FALSE(is_fault(one.route(block)));
   one.expect_joined(on_pole);
   ASSERT_EQ(one.paths().size(), 2U);
@@ -48,9 +48,9 @@ TEST(Router, TurnsTheRedundantJointOnThePoleAndThenLeavesIt) {
 
 TEST(Router, LeavesThePoleWithoutATurnWhereTheAzimuthIsThatOfTheJoint) {
   Routed one(bench_machine());
-  one.stand_at({{0, 0, 0}, leaning(0.3, 0)});
+  one.stand_at({{0, 0, 0}, tilted(0.3, 0)});
   ASSERT_FALSE(is_fault(one.route(cut({40, 0, 0}, Vector3::UnitZ()))));
-  ASSERT_FALSE(is_fault(one.route(cut({60, 0, 0}, leaning(0.3, std::numbers::pi)))));
+  ASSERT_FALSE(is_fault(one.route(cut({60, 0, 0}, tilted(0.3, std::numbers::pi)))));
   EXPECT_EQ(one.paths().size(), 1U) << "out on the other branch";
   EXPECT_EQ(one.cursor.joints[3], one.paths()[0].joints_begin[3]);
 }
@@ -100,16 +100,16 @@ TEST(Router, PassesOverThePoleItselfWhereNoStraightPassageIsInsideTravel) {
 
 TEST(Router, TakesAxesNearThePoleForThePole) {
   Routed one(bench_machine());
-  EXPECT_EQ(one.router.eased(leaning(0.01, 1), 0.009), leaning(0.01, 1));
+  EXPECT_EQ(one.router.eased(tilted(0.01, 1), 0.009), tilted(0.01, 1));
   EXPECT_EQ(one.router.axis_deviation_rad(), 0);
-  EXPECT_EQ(one.router.eased(leaning(0.01, 1), 0.011), Vector3::UnitZ());
+  EXPECT_EQ(one.router.eased(tilted(0.01, 1), 0.011), Vector3::UnitZ());
   EXPECT_NEAR(one.router.axis_deviation_rad(), 0.01, 1e-9);
-  one.stand_at({{0, 0, 0}, leaning(0.3, 0)});
-  ASSERT_FALSE(is_fault(one.route(cut({40, 0, 0}, leaning(0.5 * kPoleEase_rad, 2)))));
+  one.stand_at({{0, 0, 0}, tilted(0.3, 0)});
+  ASSERT_FALSE(is_fault(one.route(cut({40, 0, 0}, tilted(0.5 * kPoleEase_rad, 2)))));
   EXPECT_EQ(one.cursor.pose.axis, Vector3::UnitZ());
   EXPECT_NEAR(one.router.axis_deviation_rad(), 0.5 * kPoleEase_rad, 1e-9);
   ASSERT_TRUE(one.cursor.eased_from);
-  ASSERT_FALSE(is_fault(one.route(cut({45, 0, 0}, leaning(0.3, 2)))));
+  ASSERT_FALSE(is_fault(one.route(cut({45, 0, 0}, tilted(0.3, 2)))));
   EXPECT_FALSE(one.cursor.eased_from);
   EXPECT_LT(one.router.axis_deviation_rad(), 1e-12) << "of each block by itself";
 }
@@ -137,10 +137,10 @@ TEST(Router, TakesTheLegsOfABlockInInverseTimeTogetherAsLongAsItSays) {
 TEST(Router, TurnsToAnotherBranchInsideTheFreeCone) {
   MachineModel model = lai_machine();
   Routed probe(model);
-  const ToolPose begin{{0, 0, 0}, leaning(0.001, 0)};
+  const ToolPose begin{{0, 0, 0}, tilted(0.001, 0)};
   probe.stand_at(begin);
   const double at = probe.cursor.joints[3];
-  const ClBlock block = cut({20, 0, 0}, leaning(0.3, 2.5));
+  const ClBlock block = cut({20, 0, 0}, tilted(0.3, 2.5));
   ASSERT_FALSE(is_fault(probe.route(block)));
   const double by = probe.cursor.joints[3] - at;
   ASSERT_GT(std::abs(by), 2);
@@ -187,9 +187,9 @@ TEST(Router, LeavesThePoleByTheWayThatCarriesFarthest) {
     Answers answers;
     answers.prefers_positive = prefers_positive;
     one.router.ask(&answers);
-    one.stand_at({{0, 0, 0}, leaning(0.3, 0)});
+    one.stand_at({{0, 0, 0}, tilted(0.3, 0)});
     ASSERT_FALSE(is_fault(one.route(cut({40, 0, 0}, Vector3::UnitZ()))));
-    ASSERT_FALSE(is_fault(one.route(cut({60, 0, 0}, leaning(0.3, 1.2)))));
+    ASSERT_FALSE(is_fault(one.route(cut({60, 0, 0}, tilted(0.3, 1.2)))));
     EXPECT_EQ(answers.asked.sequence, 7U);
     EXPECT_FALSE(answers.asked.is_on_its_way);
     EXPECT_EQ(one.cursor.joints[3] > 0, prefers_positive);
@@ -203,12 +203,12 @@ TEST(Router, SaysThatItWaitsForBlocks) {
   Answers answers;
   answers.is_known = false;
   one.router.ask(&answers);
-  one.stand_at({{0, 0, 0}, leaning(0.3, 0)});
+  one.stand_at({{0, 0, 0}, tilted(0.3, 0)});
   ASSERT_FALSE(is_fault(one.route(cut({40, 0, 0}, Vector3::UnitZ()))));
   EXPECT_FALSE(one.router.needs_ahead());
-  (void)one.route(cut({60, 0, 0}, leaning(0.3, 1.2)));
+  (void)one.route(cut({60, 0, 0}, tilted(0.3, 1.2)));
   EXPECT_TRUE(one.router.needs_ahead());
-  (void)one.route(cut({70, 0, 0}, leaning(0.3, 1.2)));
+  (void)one.route(cut({70, 0, 0}, tilted(0.3, 1.2)));
   EXPECT_FALSE(one.router.needs_ahead());
 }
 

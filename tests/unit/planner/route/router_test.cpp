@@ -17,9 +17,9 @@ namespace {
 
 TEST(Router, HoldsTheRedundantJointWhereTheAxisStandsStill) {
   Routed one(lai_machine());
-  one.stand_at({{0, 0, 0}, leaning(0.3, 0.4)});
+  one.stand_at({{0, 0, 0}, tilted(0.3, 0.4)});
   const JointVector from = one.cursor.joints;
-  const ClBlock block = cut({40, 10, -5}, leaning(0.3, 0.4));
+  const ClBlock block = cut({40, 10, -5}, tilted(0.3, 0.4));
   ASSERT_FALSE(is_fault(one.route(block)));
   one.expect_joined(from);
   EXPECT_LT(one.away_from(block), kRounding);
@@ -35,9 +35,9 @@ TEST(Router, HoldsTheRedundantJointWhereTheAxisStandsStill) {
 TEST(Router, StaysOnTheBranchThatTheMachineStandsOn) {
   for (const int branch : {0, 1}) {
     Routed one(lai_machine());
-    one.stand_at({{0, 0, 0}, leaning(0.3, 0.4)}, branch);
+    one.stand_at({{0, 0, 0}, tilted(0.3, 0.4)}, branch);
     const JointVector from = one.cursor.joints;
-    const ClBlock block = cut({40, 10, -5}, leaning(0.5, 0.9));
+    const ClBlock block = cut({40, 10, -5}, tilted(0.5, 0.9));
     ASSERT_FALSE(is_fault(one.route(block)));
     one.expect_joined(from);
     EXPECT_LT(one.away_from(block), kRounding);
@@ -52,14 +52,14 @@ TEST(Router, KeepsToTheFeedOfTheMachineAndItsFactor) {
   model.max_feed_mm_per_s = 90;
   Routed one(model);
   one.router.set_feed_factor(1.25);
-  one.stand_at({{0, 0, 0}, leaning(0.3, 0.4)});
-  ASSERT_FALSE(is_fault(one.route(cut({100, 0, 0}, leaning(0.3, 0.4), 60))));
+  one.stand_at({{0, 0, 0}, tilted(0.3, 0.4)});
+  ASSERT_FALSE(is_fault(one.route(cut({100, 0, 0}, tilted(0.3, 0.4), 60))));
   EXPECT_EQ(one.staged->times[0].feed_factor, 1.25);
   EXPECT_NEAR(tip_speed_of(*one.staged), 75, 0.01);
-  ASSERT_FALSE(is_fault(one.route(cut({0, 0, 0}, leaning(0.3, 0.4), 80))));
+  ASSERT_FALSE(is_fault(one.route(cut({0, 0, 0}, tilted(0.3, 0.4), 80))));
   EXPECT_EQ(one.staged->times[0].feed_factor, 90.0 / 80);
   EXPECT_NEAR(tip_speed_of(*one.staged), 90, 0.01);
-  ASSERT_FALSE(is_fault(one.route(cut({100, 0, 0}, leaning(0.3, 0.4), 200))));
+  ASSERT_FALSE(is_fault(one.route(cut({100, 0, 0}, tilted(0.3, 0.4), 200))));
   EXPECT_NEAR(tip_speed_of(*one.staged), 90, 0.01);
   EXPECT_EQ(one.cursor.cut_mm_per_s, 90);
 }
@@ -67,8 +67,8 @@ TEST(Router, KeepsToTheFeedOfTheMachineAndItsFactor) {
 TEST(Router, RunsARapidAsFastAsTheJointsAllow) {
   Routed one(lai_machine());
   one.router.set_feed_factor(1.25);
-  one.stand_at({{0, 0, 0}, leaning(0.3, 0.4)});
-  ASSERT_FALSE(is_fault(one.route(rapid({200, 0, 0}, leaning(0.3, 0.4)))));
+  one.stand_at({{0, 0, 0}, tilted(0.3, 0.4)});
+  ASSERT_FALSE(is_fault(one.route(rapid({200, 0, 0}, tilted(0.3, 0.4)))));
   EXPECT_EQ(one.paths()[0].motion, MotionKind::kRapid);
   EXPECT_GT(tip_speed_of(*one.staged), 250);
   EXPECT_EQ(one.staged->times[0].feed_factor, 1);
@@ -78,8 +78,8 @@ TEST(Router, RunsARapidAsFastAsTheJointsAllow) {
 
 TEST(Router, TakesABlockInInverseTimeAsLongAsItSays) {
   Routed one(lai_machine());
-  one.stand_at({{0, 0, 0}, leaning(0.3, 0.4)});
-  ClBlock block = cut({60, 0, 0}, leaning(0.35, 0.5), 0.25);
+  one.stand_at({{0, 0, 0}, tilted(0.3, 0.4)});
+  ClBlock block = cut({60, 0, 0}, tilted(0.35, 0.5), 0.25);
   block.feed_meaning = FeedMeaning::kInverseTime;
   ASSERT_FALSE(is_fault(one.route(block)));
   EXPECT_GT(duration_of(*one.staged), 4);
@@ -89,8 +89,8 @@ TEST(Router, TakesABlockInInverseTimeAsLongAsItSays) {
 
 TEST(Router, FollowsAnArc) {
   Routed one(lai_machine());
-  one.stand_at({{20, 0, 0}, leaning(0.3, 0.4)});
-  ClBlock block = cut({0, 20, 0}, leaning(0.3, 0.4));
+  one.stand_at({{20, 0, 0}, tilted(0.3, 0.4)});
+  ClBlock block = cut({0, 20, 0}, tilted(0.3, 0.4));
   block.is_arc = true;
   block.sweep_rad = std::numbers::pi / 2;
   ASSERT_FALSE(is_fault(one.route(block)));
@@ -102,28 +102,28 @@ TEST(Router, FollowsAnArc) {
 
 TEST(Router, StagesNothingWhereNothingMoves) {
   Routed one(lai_machine());
-  one.stand_at({{20, 0, 0}, leaning(0.3, 0.4)});
-  EXPECT_FALSE(is_fault(one.route(cut({20, 0, 0}, leaning(0.3, 0.4)))));
+  one.stand_at({{20, 0, 0}, tilted(0.3, 0.4)});
+  EXPECT_FALSE(is_fault(one.route(cut({20, 0, 0}, tilted(0.3, 0.4)))));
   EXPECT_EQ(one.staged->path_count, 0);
 }
 
 TEST(Router, KnowsWhatIsInReachAndTravel) {
   Routed one(lai_machine());
-  one.stand_at({{0, 0, 0}, leaning(0.3, 0.4)});
-  EXPECT_TRUE(one.router.is_reachable(cut({100, 0, 0}, leaning(0.5, 2)), one.cursor));
-  EXPECT_FALSE(one.router.is_reachable(cut({100, 0, 0}, leaning(1.2, 2)), one.cursor))
+  one.stand_at({{0, 0, 0}, tilted(0.3, 0.4)});
+  EXPECT_TRUE(one.router.is_reachable(cut({100, 0, 0}, tilted(0.5, 2)), one.cursor));
+  EXPECT_FALSE(one.router.is_reachable(cut({100, 0, 0}, tilted(1.2, 2)), one.cursor))
       << "the tilt goes to 60 degrees";
-  EXPECT_FALSE(one.router.is_reachable(cut({3000, 0, 0}, leaning(0.5, 2)), one.cursor));
+  EXPECT_FALSE(one.router.is_reachable(cut({3000, 0, 0}, tilted(0.5, 2)), one.cursor));
   one.model.tip_box.is_set = true;
   one.model.tip_box.min = {-1e4, -1e4, -1e4};
   one.model.tip_box.max = {-1e3, 1e4, 1e4};
-  EXPECT_FALSE(one.router.is_reachable(cut({100, 0, 0}, leaning(0.5, 2)), one.cursor));
+  EXPECT_FALSE(one.router.is_reachable(cut({100, 0, 0}, tilted(0.5, 2)), one.cursor));
 }
 
 TEST(Router, SaysWhichJointLeavesTravel) {
   Routed one(lai_machine());
-  one.stand_at({{0, 0, 0}, leaning(0.3, 0.4)});
-  const PathFault fault = one.route(cut({100, 0, 0}, leaning(1.2, 0.4)));
+  one.stand_at({{0, 0, 0}, tilted(0.3, 0.4)});
+  const PathFault fault = one.route(cut({100, 0, 0}, tilted(1.2, 0.4)));
   EXPECT_EQ(fault.kind, PathFault::Kind::kTravel);
   EXPECT_EQ(fault.joint, 4);
 }
