@@ -20,6 +20,8 @@ namespace {
 
 using record::Finding;
 
+constexpr std::size_t kLift = 2, kC = 3, kTilt = 4;  // joints of the Lai machine
+
 MachineModel short_travel() {
   MachineModel model = test::lai_machine();
   model.joints[3].limits.travel_min = units::rad_from_deg(-250);
@@ -29,10 +31,10 @@ MachineModel short_travel() {
   return model;
 }
 
-/// Two turns round a cone.
-std::string spiral() {
+/// Turns round a cone, 3 deg a block.
+std::string spiral(int blocks) {
   std::string text = "UNITS/MM\nMULTAX/ON\nFEDRAT/3000,MMPM\n";
-  for (int n = 0; n <= 240; ++n) {
+  for (int n = 0; n <= blocks; ++n) {
     const double azimuth = units::rad_from_deg(3.0 * n);
     char line[160];
     std::snprintf(line, sizeof line, "GOTO/%.6f,%.6f,%.6f,%.9f,%.9f,%.9f\n", 20 * std::cos(azimuth),
@@ -54,17 +56,16 @@ class SimulatedUnwinding : public ::testing::TestWithParam<Transition> {
     return std::any_of(report.findings.begin(), report.findings.end(),
                        [kind](const Finding& finding) { return finding.kind == kind; });
   }
-  /// First record of an unwinding in which C turns well, or the tool is on its way.
-  [[nodiscard]] std::size_t find_in(const std::vector<CycleRecord>& records, bool turns) const {
+  /// The record of an unwinding in which that joint is fastest.
+  [[nodiscard]] static std::size_t find_in(const std::vector<CycleRecord>& records,
+                                           std::size_t joint) {
     std::size_t best = 0;
     double max = 0;
     for (std::size_t n = 1; n < records.size(); ++n) {
       if (records[n].motion != MotionKind::kUnwind) continue;
-      const double turned = std::abs(records[n].joints[3] - records[n - 1].joints[3]);
-      const double moved = std::abs(records[n].joints[2] - records[n - 1].joints[2]);
-      const double is = turns ? turned : moved;
-      if (is > max) {
-        max = is;
+      const double moved = std::abs(records[n].joints[joint] - records[n - 1].joints[joint]);
+      if (moved > max) {
+        max = moved;
         best = n;
       }
     }
@@ -72,7 +73,7 @@ class SimulatedUnwinding : public ::testing::TestWithParam<Transition> {
   }
 
   MachineModel model = short_travel();
-  std::string text = spiral();
+  std::string text = spiral(240);  // two turns
   test::Scratch file{".csv"};
 };
 
@@ -102,15 +103,36 @@ TEST_P(SimulatedUnwinding, IsFoundOutWhereItIsNoneOfTheDeclaredKind) {
   const test::SimulatedRun run = test::run_simulation(text, model);
   ASSERT_EQ(run.report.outcome, Outcome::kDone) << run.report.reason;
   auto sideways = run.records;
-  sideways[find_in(run.records, false)].joints[0] += 0.5;
+  sideways[find_in(run.records, kLift)].joints[0] += 0.5;
   EXPECT_TRUE(has(check(sideways), Finding::Kind::kUnwinding)) << "off the line";
   auto with_c = run.records;
-  with_c[find_in(run.records, true)].joints[1] += 0.5;
+  with_c[find_in(run.records, kC)].joints[1] += 0.5;
   EXPECT_TRUE(has(check(with_c), Finding::Kind::kUnwinding)) << "another joint moves with C";
   model.unwind_retract_mm = 25;
   EXPECT_TRUE(has(check(run.records), Finding::Kind::kUnwinding)) << "not off as far as declared";
   model.unwind_policy = UnwindPolicy::kRefuse;
   EXPECT_TRUE(has(check(run.records), Finding::Kind::kUnwinding)) << "not declared";
+}
+
+TEST_P(SimulatedUnwinding, ToTheOtherBranchIsFoundOutWhereItIsNoneOfTheDeclaredKind) {
+  model.joints[kC].limits.travel_min = units::rad_from_deg(-200);
+  model.joints[kC].limits.travel_max = units::rad_from_deg(200);
+  text = spiral(155);
+  const test::SimulatedRun run = test::run_simulation(text, model);
+  ASSERT_EQ(run.report.outcome, Outcome::kDone) << run.report.reason;
+  ASSERT_EQ(run.report.unwindings.size(), 1U);
+  ASSERT_TRUE(run.report.unwindings[0].is_other_branch());
+  EXPECT_TRUE(check(run.records).passed()) << to_text(check(run.records));
+  const std::size_t tilted = find_in(run.records, kTilt);
+  auto sideways = run.records;
+  sideways[tilted].joints[0] += 0.5;
+  EXPECT_TRUE(has(check(sideways), Finding::Kind::kUnwinding)) << "the tip moves on the way";
+  auto astray = run.records;
+  astray[tilted].joints[kC] += 0.1;
+  EXPECT_TRUE(has(check(astray), Finding::Kind::kUnwinding))
+      << "the axis leaves the way to the pole";
+  model.unwind_retract_mm = 25;
+  EXPECT_TRUE(has(check(run.records), Finding::Kind::kUnwinding)) << "not off as far as declared";
 }
 
 /// A wire that lost two rows in the very moment in which the tool leaves, and where it comes back.
