@@ -66,7 +66,7 @@ TEST_P(Creep, IsNowhereOnTheWayPastASingularityOfTheWrist) {
 TEST_P(Creep, IsNowhereInDrawnPrograms) {
   const auto programs = number_of<std::uint32_t>("MERIDIAN_CREEP_PROGRAMS", kIsTimed ? 6 : 2);
   double longest = 0;
-  for (const std::string& name : shipped_machines()) {
+  for (const std::string& name : cases(shipped_machines())) {
     const MachineModel model = config::load_machine(shipped_file(name));
     for (std::uint32_t seed = 1; seed <= programs; ++seed) {
       SCOPED_TRACE(name + ", seed " + std::to_string(seed));
@@ -101,7 +101,7 @@ std::vector<ClBlock> with_a_slow_block(const MachineModel& model, int slow, doub
 
 TEST_P(Creep, IsNowhereBetweenARestAndABlockThatIsSlowByItsOwnWord) {
   double longest = 0;
-  for (const std::string& name : shipped_machines()) {
+  for (const std::string& name : cases(shipped_machines())) {
     const MachineModel model = config::load_machine(shipped_file(name));
     for (const double length_mm : cases({0.007, 0.03, 1.0})) {
       for (int slow = 1; slow <= 3; ++slow) {

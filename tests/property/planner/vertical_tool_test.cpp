@@ -38,7 +38,7 @@ std::vector<ClBlock> along_the_pole(double length_mm, double off) {
 }
 
 TEST(VerticalTool, IsLedOntoThePoleAndOffItOnEveryMachine) {
-  for (const std::string& name : shipped_machines()) {
+  for (const std::string& name : cases(shipped_machines())) {
     const MachineModel model = config::load_machine(shipped_file(name));
     if (redundant_joint(model) < 0) continue;  // a robot's singularities lie elsewhere
     for (const double length_mm : cases({2.0, 25.0, 100.0})) {
@@ -55,7 +55,7 @@ TEST(VerticalTool, IsLedOntoThePoleAndOffItOnEveryMachine) {
 
 /// A run from rest to rest that is shorter than the gaps between the knots of C's way.
 TEST(VerticalTool, MayBeTiltedByLittleOnARunOfMicrometres) {
-  for (const std::string& name : shipped_machines()) {
+  for (const std::string& name : cases(shipped_machines())) {
     const MachineModel model = config::load_machine(shipped_file(name));
     if (redundant_joint(model) < 0) continue;
     for (const double length_mm : {0.002, 0.02, 0.2, 2.0}) {
@@ -91,7 +91,7 @@ std::vector<ClBlock> from_a_circle(double tilt_deg, double step_deg, double step
 
 TEST(VerticalTool, IsLedOntoThePoleFromCirclesAboutIt) {
   double largest = 0;
-  for (const std::string& name : shipped_machines()) {
+  for (const std::string& name : cases(shipped_machines())) {
     const MachineModel model = config::load_machine(shipped_file(name));
     if (redundant_joint(model) < 0) continue;
     for (const double tilt_deg : cases({0.5, 1.0, 2.2, 4.0})) {
