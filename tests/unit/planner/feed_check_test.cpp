@@ -69,6 +69,76 @@ TEST(FeedCheck, TakesAStandstillForAUseWithoutBound) {
   EXPECT_GT(use_of(unit_limits(), cell, {1, -2, 0}).jerk, 1e6);
 }
 
+/// A joint that bends, and u̇, ü, u⃛: what it does is set by hand.
+struct Bent {
+  double d1 = 0.5, d2 = 0.25, d3 = 0.125, v = 2, a = 3, j = 5;
+  [[nodiscard]] double acceleration() const { return d1 * a + d2 * v * v; }
+  [[nodiscard]] double jerk() const { return d1 * j + 3 * d2 * v * a + d3 * v * v * v; }
+};
+
+FeedLimits bent_limits() {
+  FeedLimits limits = unit_limits();
+  limits.velocity[0] = 10;
+  limits.acceleration[0] = 20;
+  limits.jerk[0] = 40;
+  limits.slope = 0.3;
+  return limits;
+}
+
+void expect_use(const FeedUse& use, const Bent& bent, double max_b) {
+  EXPECT_NEAR(use.b, bent.v * bent.v / max_b, 1e-12);
+  EXPECT_NEAR(use.velocity, bent.d1 * bent.v / 10, 1e-12);
+  EXPECT_NEAR(use.acceleration, (bent.acceleration() + 0.3 * bent.d1 * bent.v) / 20, 1e-12);
+  EXPECT_NEAR(use.jerk, bent.jerk() / 40, 1e-12);
+}
+
+TEST(FeedCheck, TakesEveryTermOfAJointThatBends) {
+  const Bent bent;
+  FeedCell cell;
+  cell.h = 0.1;
+  CellMotion motion;
+  for (int k = 0; k <= FeedCell::kSteps; ++k) {
+    cell.at[k].d1[0] = bent.d1;
+    cell.at[k].d2[0] = bent.d2;
+    cell.at[k].d3[0] = bent.d3;
+    cell.at[k].max_b = 8;
+    motion.v[k] = bent.v;
+    motion.a[k] = bent.a;
+    motion.j[k] = bent.j;
+  }
+  expect_use(use_of_motion(bent_limits(), cell, motion), bent, 8);
+  FeedUse use;
+  add_use(bent_limits(), cell.at[3], bent.v, bent.a, bent.j, use);
+  expect_use(use, bent, 8);
+  add_use(bent_limits(), cell.at[3], 0.1, 0, 0, use);
+  expect_use(use, bent, 8);  // the larger one stays
+}
+
+TEST(FeedCheck, KnowsTheMotionOfALaw) {
+  // b = 4 + 6 x - 10 x² over 0.4: at its end b = 4.8, b' = -2; u⃛ = b''/2 √b.
+  FeedCell cell;
+  cell.h = 0.4;
+  const CellLaw law{4, 6, -2};
+  for (const int at : {0, FeedCell::kSteps}) {
+    for (CellSample& sample : cell.at) {
+      sample = {};
+      sample.max_b = 1e9;
+    }
+    cell.at[at].d1[0] = 0.5;
+    cell.at[at].d2[0] = 0.25;
+    cell.at[at].d3[0] = 0.125;
+    Bent bent;
+    bent.v = std::sqrt(at == 0 ? 4 : 4.8);
+    bent.a = at == 0 ? 3 : -1;
+    bent.j = -10 * bent.v;
+    const FeedUse use = use_of(bent_limits(), cell, law);
+    EXPECT_NEAR(use.velocity, bent.d1 * bent.v / 10, 1e-12);
+    EXPECT_NEAR(use.acceleration, (std::abs(bent.acceleration()) + 0.3 * bent.d1 * bent.v) / 20,
+                1e-12);
+    EXPECT_NEAR(use.jerk, std::abs(bent.jerk()) / 40, 1e-12);
+  }
+}
+
 /// b = (x - least)² + left over a cell of length 1: every derivative but that of the law is 0.
 FeedUse use_of_dip(double least, double left) {
   FeedCell cell;
