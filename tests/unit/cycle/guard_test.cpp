@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "meridian/kinematics/soft_limits.hpp"
 #include "support/keep_out_machine.hpp"
+#include "support/machines.hpp"
 
 namespace meridian {
 namespace {
@@ -75,6 +77,21 @@ TEST(Guard, StopsASetpointOutsideASoftLimitInsideTheTravelOfTheMachine) {
   EXPECT_EQ(check(machine, next, {}, last, kPeriod_s).alarm, Alarm::kTravel);
 }
 
+TEST(Guard, AllowsARoundingBeyondTravelAndNoMore) {
+  const MachineModel machine = machine_under_guard();
+  for (const double end : {-100.0, 100.0}) {
+    const double out = end < 0 ? -1 : 1;
+    const JointVector inside{end - out * 0.01};
+    EXPECT_EQ(check(machine, {end + out * 0.9e-9}, {}, inside, kPeriod_s).alarm, Alarm::kNone);
+    EXPECT_EQ(check(machine, {end + out * 1.1e-9}, {}, inside, kPeriod_s).alarm, Alarm::kTravel);
+    const JointVector outside{end + out * 5};
+    EXPECT_EQ(check(machine, {outside[0] + out * 0.9e-11}, {}, outside, kPeriod_s).alarm,
+              Alarm::kNone);
+    EXPECT_EQ(check(machine, {outside[0] + out * 1.2e-11}, {}, outside, kPeriod_s).alarm,
+              Alarm::kTravel);
+  }
+}
+
 TEST(Guard, WhoStandsOutsideMayStandAndComeBackButGoNoFarther) {
   JointVector last{}, next{};
   last[1] = next[1] = 105;
@@ -113,6 +130,21 @@ TEST(Guard, StopsASetpointBehindAKeepOutBoxThatIsThinnerThanAStep) {
   ASSERT_TRUE(machine.keep_out.add(wall));
   EXPECT_EQ(check(machine, {10.1, 0, 0}, {}, {9.95, 0, 0}, kPeriod_s).alarm, Alarm::kKeepOut);
   EXPECT_EQ(check(machine, {9.9, 0, 0}, {}, {9.95, 0, 0}, kPeriod_s).alarm, Alarm::kNone);
+}
+
+/// A step over the corner of a box, in which it is `depth` deep in the middle.
+GuardVerdict check_over_corner(double depth) {
+  MachineModel machine = machine_under_guard();
+  for (JointSpec& joint : machine.joints) joint.limits.fault_acceleration = 8000;
+  machine = test::with_keep_out(machine, 0b11, {10, -5}, {20, 0});
+  return check(machine, {10.05 + 2 * depth, 0.05}, {}, {9.95, -2 * depth - 0.05}, kPeriod_s);
+}
+
+TEST(Guard, ALineBetweenTwoSetpointsMayCutACornerAsFarAsAFaultStopBendsOffIt) {
+  // a t²/8 = 0.001 mm
+  EXPECT_EQ(check_over_corner(-0.001).alarm, Alarm::kNone);
+  EXPECT_EQ(check_over_corner(0.0009).alarm, Alarm::kNone);
+  EXPECT_EQ(check_over_corner(0.0011).alarm, Alarm::kKeepOut);
 }
 
 TEST(Guard, WhoStandsInAKeepOutBoxMayStandAndComeOutButGoNoDeeper) {
@@ -162,6 +194,29 @@ TEST(Guard, ATipBoxSaysNothingWhereAJointThatMovesTheTipHasNoReference) {
   const MachineModel machine = machine_with_a_tip_box();
   EXPECT_EQ(check_tip_box(machine, 100, {10.1}, {}, 0b00101).alarm, Alarm::kNone);
   EXPECT_EQ(check_tip_box(machine, 100, {10.1}, {}, 0b10101).alarm, Alarm::kTipBox);
+}
+
+TEST(Guard, ChecksTheDrivesOfAStageAsItDoesJoints) {
+  MachineModel machine = test::hybrid_machine();  // its drives reach 300 mm/s
+  const JointVector rest{};
+  const double u = limited_value(machine, rest, 5);
+  EXPECT_EQ(check_stage(machine, {0, 0.299}, rest, kPeriod_s, true).alarm, Alarm::kNone);
+  EXPECT_EQ(check_stage(machine, {0, -0.299}, rest, kPeriod_s, true).alarm, Alarm::kNone);
+  const GuardVerdict step = check_stage(machine, {0, 0.301}, rest, kPeriod_s, true);
+  EXPECT_EQ(step.alarm, Alarm::kStep);
+  EXPECT_EQ(step.joint, 5);
+  EXPECT_NEAR(std::abs(step.value), 0.301, 1e-9);
+  EXPECT_EQ(check_stage(machine, {0, 0.6}, rest, 2.1 * kPeriod_s, true).alarm, Alarm::kNone);
+  const JointVector nowhere{0, std::numeric_limits<double>::quiet_NaN()};
+  EXPECT_EQ(check_stage(machine, nowhere, rest, kPeriod_s, true).alarm, Alarm::kNotFinite);
+  machine.stage_drives[0].limits.travel_max = u + 0.1;
+  machine.stage_drives[0].limits.travel_min = u - 0.1;
+  const GuardVerdict travel = check_stage(machine, {0, 0.2}, rest, kPeriod_s, true);
+  EXPECT_EQ(travel.alarm, Alarm::kTravel);
+  EXPECT_EQ(travel.joint, 5);
+  EXPECT_EQ(check_stage(machine, {0, 0.2}, rest, kPeriod_s, false).alarm, Alarm::kNone);
+  EXPECT_EQ(check(machine, {0, 0.2}, {}, rest, kPeriod_s).alarm, Alarm::kTravel);
+  EXPECT_EQ(check(machine, {0, 0.2}, {}, rest, kPeriod_s, 0).alarm, Alarm::kNone);
 }
 
 TEST(Guard, EndlessJointsHaveNoTravel) {

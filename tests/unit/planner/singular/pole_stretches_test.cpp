@@ -103,6 +103,16 @@ TEST(PoleStretches, FindAMinimumThatIsFartherOffWithoutRoomForAnotherWay) {
   EXPECT_FALSE(far.stretches.find_next(far.settled)) << "it turns the joint gently";
 }
 
+TEST(PoleStretches, CompareTheLastProbeWithTheEndOfThePath) {
+  const PoleProbes::Place last = 40 * PoleProbes::kProbes - 1;
+  Stretched on(40, passing(0.03, 39.8)), before(40, passing(0.03, 40)),
+      on_rise(40, passing(0.03, 39));
+  EXPECT_TRUE(on.stretches.is_minimum(last));
+  EXPECT_FALSE(before.stretches.is_minimum(last)) << "the end of the path is closer";
+  EXPECT_FALSE(on_rise.stretches.is_minimum(last));
+  EXPECT_FALSE(Stretched(40, passing(0.03, -1)).stretches.is_minimum(0)) << "nothing is before";
+}
+
 TEST(PoleStretches, PassOverWhatIsSettledAlready) {
   Stretched minimum(120, passing(0.03, 60.05));
   minimum.settled = {60.0, true, false, true, 0};
@@ -251,6 +261,16 @@ TEST(PoleStretches, HaveNoRoomWhereWhatIsSettledReachesToWhatIsClose) {
     ASSERT_EQ(one.ask(), Answer::kFound);
     EXPECT_EQ(one.out.has_room, left > 0.01);
   }
+}
+
+TEST(PoleStretches, EndWhereAMinimumBehindTheLastProbeIs) {
+  // Only the minimum at 59.9 is close, beside both of its neighbours.
+  Stretched one(120, [](double u) { return Lean{0.05 * (u - 59.9), 0.004}; });
+  ASSERT_EQ(one.ask(), Answer::kFound);
+  EXPECT_NEAR(one.out.close_begin, std::min(one.probes.u_of(one.out.first), 59.9), 1e-6);
+  EXPECT_NEAR(one.out.close_end, std::max(one.probes.u_of(one.out.last), 59.9), 1e-6);
+  EXPECT_LE(one.out.close_begin, 59.9);
+  EXPECT_GE(one.out.close_end, 59.9 - 1e-6);
 }
 
 TEST(PoleStretches, LookAgainAtAllThatIsHeldBack) {

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meridian/cycle/stop_margin.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// Which of a plan's stop margins a state gets. tests/property/cycle/stop_margin_test.cpp proves
+/// that what lies between two of them keeps the joints.
+namespace meridian::test::stop_margin_of {
+namespace {
+
+/// A piece of a smooth plan: a stop from 50 mm/s or less, or one of two that are harder from 10.
+TimePiece smooth_piece() {
+  TimePiece piece;
+  piece.stop_accel = 100;
+  piece.stop_jerk = 1000;
+  piece.fault_accel = 200;
+  piece.fault_jerk = 4000;
+  piece.stop_velocity = 50;
+  piece.fault_velocity = 80;
+  piece.slow_velocity = 10;
+  piece.slow_stop_accel = 300;
+  piece.slow_stop_jerk = 3000;
+  piece.slow_fault_accel = 500;
+  piece.slow_fault_jerk = 9000;
+  return piece;
+}
+
+void expect_margin(const StopMargin& margin, double accel, double jerk) {
+  EXPECT_DOUBLE_EQ(margin.accel, accel);
+  EXPECT_DOUBLE_EQ(margin.jerk, jerk);
+}
+
+TEST(StopMarginOfAState, IsTheSlowOneUpToItsSpeed) {
+  const TimePiece piece = smooth_piece();
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 10, 0, 0}), 300, 3000);
+  expect_margin(authority_of(piece, StopKind::kFault, {0, 10, 0, 0}), 500, 9000);
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 10.001, 0, 0}), 100, 1000);
+  expect_margin(authority_of(piece, StopKind::kFault, {0, 10.001, 0, 0}), 200, 4000);
+}
+
+TEST(StopMarginOfAState, CountsTheSpeedThatAnAccelerationStillGains) {
+  const TimePiece piece = smooth_piece();
+  // 120² / (2 · 3000) = 2.4
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 7.59, 120, 0}), 300, 3000);
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 7.61, 120, 0}), 100, 1000);
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 9.9, -120, 0}), 300, 3000);
+}
+
+TEST(StopMarginOfAState, IsNoneAboveTheSpeedThatWasLookedAt) {
+  const TimePiece piece = smooth_piece();
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 50, 0, 0}), 100, 1000);
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 50.001, 0, 0}), 0, 0);
+  expect_margin(authority_of(piece, StopKind::kFault, {0, 80, 0, 0}), 200, 4000);
+  expect_margin(authority_of(piece, StopKind::kFault, {0, 80.001, 0, 0}), 0, 0);
+}
+
+TEST(StopMarginOfAState, IsNoneForADecelerationThatComesFromAnotherStop) {
+  TimePiece piece = smooth_piece();
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 40, -119, 0}), 100, 1000);
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 40, -121, 0}), 0, 0);
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 5, -299, 0}), 300, 3000);
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 5, -301, 0}), 0, 0);
+  piece.slow_velocity = 0;
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 40, -121, 0}), 100, 1000);
+}
+
+TEST(StopMarginOfAState, HasNoSlowOneWithoutJerkOrSpeed) {
+  TimePiece piece = smooth_piece();
+  piece.slow_velocity = 0;
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 0, 0, 0}), 100, 1000);
+  piece = smooth_piece();
+  piece.slow_stop_jerk = 0;
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 5, 0, 0}), 100, 1000);
+  piece.slow_velocity = 0.5;
+  piece.slow_stop_jerk = 3000;
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 0.4, 0, 0}), 300, 3000);
+}
+
+/// A piece of a plan from rest to rest: 100 and 1000 at 50 mm/s, 300 and 3000 next to rest.
+TimePiece plan_from_rest() {
+  TimePiece piece = smooth_piece();
+  piece.stop_velocity = piece.fault_velocity = 1e9;
+  piece.slow_velocity = 0;
+  piece.authority_velocity = 50;
+  return piece;
+}
+
+TEST(StopMarginOfAState, LiesBetweenThoseAtRestAndAtThePlannedSpeed) {
+  const TimePiece piece = plan_from_rest();
+  const StopMargin got = authority_of(piece, StopKind::kHold, {0, 20, 0, 0});
+  // x = 0.4: (1 - x²) 300 + x² 100 = 268, at most 100/x = 250; used sqrt(3000 · 20) = 245.
+  EXPECT_NEAR(got.accel, std::sqrt(60000.0), 1e-9);
+  const double y = std::max(
+      largest_stop_product(20, got.accel, 3000) / largest_stop_product(50, 100, 1000), 0.064);
+  EXPECT_NEAR(got.jerk, y <= 1 ? (1 - y) * 3000 + y * 1000 : 1000, 1e-9);
+  const StopMargin slower = authority_of(piece, StopKind::kHold, {0, 1, 0, 0});
+  EXPECT_NEAR(slower.accel, std::sqrt(3000.0), 1e-9);
+  const double y1 =
+      largest_stop_product(1, slower.accel, 3000) / largest_stop_product(50, 100, 1000);
+  EXPECT_NEAR(slower.jerk, (1 - y1) * 3000 + y1 * 1000, 1e-9);
+}
+
+TEST(StopMarginOfAState, IsThatOfThePlannedSpeedWhereTheOtherIsNoHarder) {
+  TimePiece piece = plan_from_rest();
+  piece.slow_stop_accel = 99;
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 1, 0, 0}), 100, 1000);
+  piece = plan_from_rest();
+  piece.slow_stop_jerk = 999;
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 1, 0, 0}), 100, 1000);
+  piece = plan_from_rest();
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 50, 0, 0}), 100, 1000);
+  piece.authority_velocity = 0;
+  expect_margin(authority_of(piece, StopKind::kHold, {0, 1, 0, 0}), 100, 1000);
+}
+
+}  // namespace
+}  // namespace meridian::test::stop_margin_of
