@@ -56,8 +56,8 @@ dds::MachineInfo machine_info(const ServiceParts& parts, std::uint64_t service_i
   info.tip_tolerance_mm = model.tolerances.tip_mm;
   info.axis_tolerance_rad = model.tolerances.axis_rad;
   info.tool_length_mm = model.tool_length_mm;
-  info.frame_rotation = stream::rows_of(model.frame_rotation);
-  info.frame_origin_mm = to_array(model.frame_origin_mm);
+  info.frame_rotation = stream::rows_of(model.X_MW.rotation);
+  info.frame_origin_mm = to_array(model.X_MW.origin_mm);
   if (parts.machine_file.size() <= dds::kMachineFileBytes) info.machine_file = parts.machine_file;
   if (parts.tool_file.size() <= dds::kToolFileBytes) info.tool_file = parts.tool_file;
   return info;

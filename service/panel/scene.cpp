@@ -56,10 +56,10 @@ using nlohmann::json;
   json rotation = json::array();
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      rotation.push_back(model.frame_rotation(row, column));
+      rotation.push_back(model.X_MW.rotation(row, column));
     }
   }
-  return {{"rotation", rotation}, {"origin", to_json(model.frame_origin_mm)}};
+  return {{"rotation", rotation}, {"origin", to_json(model.X_MW.origin_mm)}};
 }
 
 /// The tip box in force; null where there is none.

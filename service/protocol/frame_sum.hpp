@@ -41,16 +41,16 @@ namespace meridian::stream {
 
 [[nodiscard]] inline std::uint64_t frame_sum(const MachineModel& model,
                                              std::span<const WorkFrame> rows) noexcept {
-  return frame_sum(rows_of(model.frame_rotation), to_array(model.frame_origin_mm), rows);
+  return frame_sum(rows_of(model.X_MW.rotation), to_array(model.X_MW.origin_mm), rows);
 }
 
 /// The inverse of rows_of() and to_array(): puts the workpiece of `model` there, bit for bit.
 inline void place_frame(MachineModel& model, const std::array<double, 9>& rows,
                         const Array3& origin_mm) noexcept {
   for (int i = 0; i < 9; ++i) {
-    model.frame_rotation(i / 3, i % 3) = rows[static_cast<std::size_t>(i)];
+    model.X_MW.rotation(i / 3, i % 3) = rows[static_cast<std::size_t>(i)];
   }
-  model.frame_origin_mm = to_vector(origin_mm);
+  model.X_MW.origin_mm = to_vector(origin_mm);
 }
 
 }  // namespace meridian::stream

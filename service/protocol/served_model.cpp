@@ -24,10 +24,10 @@ MachineModel whole_model(const dds::MachineInfo& info) {
   MachineModel model = config::parse_machine(info.machine_file, info.name);
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      model.frame_rotation(row, column) =
+      model.X_MW.rotation(row, column) =
           info.frame_rotation[static_cast<std::size_t>(3 * row + column)];
     }
-    model.frame_origin_mm[row] = info.frame_origin_mm[static_cast<std::size_t>(row)];
+    model.X_MW.origin_mm[row] = info.frame_origin_mm[static_cast<std::size_t>(row)];
   }
   model.tool_length_mm = info.tool_length_mm;
   model.bridge_cycles = static_cast<int>(info.bridge_cycles);

@@ -21,7 +21,7 @@ BENCHMARK(ContactsOfTheReferencePatch)->Unit(benchmark::kMicrosecond);
 void JointsOfTheReferencePatch(benchmark::State& state) {
   const PatchJob job = load_patch(MERIDIAN_SOURCE_DIR "/deploy/parts/reference-patch.toml");
   MachineModel robot = config::load_machine(MERIDIAN_SOURCE_DIR "/deploy/machines/robot-5r.toml");
-  robot.frame_origin_mm = Vector3::Zero();
+  robot.X_MW.origin_mm = Vector3::Zero();
   std::vector<ToolPose> poses;
   const auto path = cover(job.rule, job.cover);
   for (const SurfacePath::Line& line : path->lines) {

@@ -39,7 +39,7 @@ class OutsideChecker : public testing::Test {
     points.file = simulated.file();
     points.output = scratch_ / "points";
     points.reader = test::corpus_reader();
-    points.reader.frame = cl::Frame{model.frame_rotation, model.frame_origin_mm};
+    points.reader.frame = cl::Frame{model.X_MW.rotation, model.X_MW.origin_mm};
     EXPECT_EQ(cl::run_cl(points, std::cout, std::cerr), 0);
     const std::string python = "/usr/bin/python3 ";
     const std::string dense = scratch_ / "dense";

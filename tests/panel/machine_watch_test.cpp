@@ -35,9 +35,9 @@ class WatchedService : public testing::Test {
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) {
         info_.frame_rotation.at(static_cast<std::size_t>(3 * row + column)) =
-            model_.frame_rotation(row, column);
+            model_.X_MW.rotation(row, column);
       }
-      info_.frame_origin_mm.at(static_cast<std::size_t>(row)) = model_.frame_origin_mm[row];
+      info_.frame_origin_mm.at(static_cast<std::size_t>(row)) = model_.X_MW.origin_mm[row];
     }
     status_.service_id = kService;
     status_.state = State::kReady;

@@ -35,7 +35,7 @@ namespace meridian::test {
   model.joint_count = has_spherical_wrist ? 6 : 5;
   model.robot = {has_spherical_wrist, 250, 700, 700, 40};
   for (JointSpec& joint : model.joints) joint.is_rotary = true;
-  model.frame_origin_mm = {850, 0, 250};
+  model.X_MW.origin_mm = {850, 0, 250};
   model.tool_length_mm = 110;
   return model;
 }

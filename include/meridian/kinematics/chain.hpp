@@ -289,15 +289,15 @@ template <class S>
 /// eq. 4.11.
 template <class S>
 [[nodiscard]] inline bool solve_held(const ChainKinematics& k, double tool_length_mm,
-                                     const Pose<S>& pose, const S& free, Joints<S>& q) noexcept {
+                                     const Pose<S>& X_MT, const S& free, Joints<S>& q) noexcept {
   const SinCos<S> a = sin_cos(S(k.a.sign * free));
   const SinCos<S> back{-a.sin, a.cos};
-  const Vec3<S> z = turn<S>(k.a.axis, back, pose.axis);
+  const Vec3<S> z = turn<S>(k.a.axis, back, X_MT.axis);
   const S angle = atan2(dot(k.tilt_sin, z), dot(k.tilt_cos, z));
   q = {};
   q[k.a.joint] = free;
   q[k.b.joint] = k.b.sign * angle;
-  return place_tip(k, tool_length_mm, pose.tip, a, sin_cos(angle), q);
+  return place_tip(k, tool_length_mm, X_MT.tip, a, sin_cos(angle), q);
 }
 
 /// Whether the tool axis `z`, unit, in the frame of joint a, is nearer to a pole than `hold_rad`.

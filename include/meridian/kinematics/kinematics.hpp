@@ -42,28 +42,28 @@ struct Solution {
 /// The pose in the frame of the kinematics: X_MT = X_MW * X_WT.
 template <class S>
 [[nodiscard]] inline Pose<S> pose_in_machine(const MachineModel& model,
-                                             const Pose<S>& pose) noexcept {
-  const Eigen::Matrix3d& r = model.frame_rotation;
-  const Vector3& o = model.frame_origin_mm;
-  const auto turned = [&r](const Vec3<S>& v, int i) {
-    return r(i, 0) * v[0] + r(i, 1) * v[1] + r(i, 2) * v[2];
+                                             const Pose<S>& X_WT) noexcept {
+  const Eigen::Matrix3d& R_MW = model.X_MW.rotation;
+  const Vector3& p_MW = model.X_MW.origin_mm;
+  const auto in_M = [&R_MW](const Vec3<S>& v_W, int i) {
+    return R_MW(i, 0) * v_W[0] + R_MW(i, 1) * v_W[1] + R_MW(i, 2) * v_W[2];
   };
-  return {{turned(pose.tip, 0) + o[0], turned(pose.tip, 1) + o[1], turned(pose.tip, 2) + o[2]},
-          {turned(pose.axis, 0), turned(pose.axis, 1), turned(pose.axis, 2)}};
+  return {{in_M(X_WT.tip, 0) + p_MW[0], in_M(X_WT.tip, 1) + p_MW[1], in_M(X_WT.tip, 2) + p_MW[2]},
+          {in_M(X_WT.axis, 0), in_M(X_WT.axis, 1), in_M(X_WT.axis, 2)}};
 }
 
-/// The inverse of pose_in_machine().
+/// The inverse of pose_in_machine(): X_WT = X_WM * X_MT.
 template <class S>
 [[nodiscard]] inline Pose<S> pose_in_workpiece(const MachineModel& model,
-                                               const Pose<S>& pose) noexcept {
-  const Eigen::Matrix3d& r = model.frame_rotation;
-  const Vector3& o = model.frame_origin_mm;
-  const auto turned = [&r](const Vec3<S>& v, int i) {
-    return r(0, i) * v[0] + r(1, i) * v[1] + r(2, i) * v[2];
+                                               const Pose<S>& X_MT) noexcept {
+  const Eigen::Matrix3d& R_MW = model.X_MW.rotation;
+  const Vector3& p_MW = model.X_MW.origin_mm;
+  const auto in_W = [&R_MW](const Vec3<S>& v_M, int i) {
+    return R_MW(0, i) * v_M[0] + R_MW(1, i) * v_M[1] + R_MW(2, i) * v_M[2];
   };
-  const Vec3<S> tip{pose.tip[0] - o[0], pose.tip[1] - o[1], pose.tip[2] - o[2]};
-  return {{turned(tip, 0), turned(tip, 1), turned(tip, 2)},
-          {turned(pose.axis, 0), turned(pose.axis, 1), turned(pose.axis, 2)}};
+  const Vec3<S> p_M{X_MT.tip[0] - p_MW[0], X_MT.tip[1] - p_MW[1], X_MT.tip[2] - p_MW[2]};
+  return {{in_W(p_M, 0), in_W(p_M, 1), in_W(p_M, 2)},
+          {in_W(X_MT.axis, 0), in_W(X_MT.axis, 1), in_W(X_MT.axis, 2)}};
 }
 
 /// Returns tip and tool axis in W of the joints `q`.
@@ -100,26 +100,26 @@ template <class S>
 /// axis. Of a machine with two opposite poles, either. Zero where it has none.
 [[nodiscard]] inline Vector3 pole_direction(const MachineModel& model) noexcept {
   if (redundant_joint(model) < 0) return Vector3::Zero();
-  Vector3 pole = Vector3::UnitZ();
+  Vector3 pole_M = Vector3::UnitZ();
   if (model.family == MachineFamily::kChain) {
-    pole = model.chain.has_pole ? model.chain.a.axis : Vector3(-model.chain.a.axis);
+    pole_M = model.chain.has_pole ? model.chain.a.axis : Vector3(-model.chain.a.axis);
   }
-  return model.frame_rotation.transpose() * pole;
+  return model.X_MW.rotation.transpose() * pole_M;
 }
 
 /// Returns the angle from the tool axis to the nearest pole, accurate down to zero; π where the
-/// machine has no pole. Frame of `axis`: W; its length does not matter.
-[[nodiscard]] inline double pole_distance(const MachineModel& model, const Vector3& axis) noexcept {
-  const Vector3 k = model.frame_rotation * axis;
+/// machine has no pole. The length of `k_W` does not matter.
+[[nodiscard]] inline double pole_distance(const MachineModel& model, const Vector3& k_W) noexcept {
+  const Vector3 k_M = model.X_MW.rotation * k_W;
   switch (model.family) {
     case MachineFamily::kChain:
-      return chain::pole_distance(model.chain, k);
+      return chain::pole_distance(model.chain, k_M);
     case MachineFamily::kRobot:
       return std::numbers::pi;
     case MachineFamily::kLai:
       break;
   }
-  return atan2(hypot(k[0], k[1]), std::abs(k[2]));
+  return atan2(hypot(k_M[0], k_M[1]), std::abs(k_M[2]));
 }
 
 namespace detail {
@@ -161,18 +161,18 @@ inline void wind(Joints<S>& q, int i, const JointVector& reference) noexcept {
 
 template <class S>
 [[nodiscard]] inline SolveStatus solve_lai(const MachineModel& model, double tool_length_mm,
-                                           const Pose<S>& pose, int branch,
+                                           const Pose<S>& X_MT, int branch,
                                            const JointVector& reference, Joints<S>& q) noexcept {
   const double length = model.lai.pivot_mm + tool_length_mm;
-  const double square = value_of(pose.axis[0]) * value_of(pose.axis[0]) +
-                        value_of(pose.axis[1]) * value_of(pose.axis[1]);
+  const double square = value_of(X_MT.axis[0]) * value_of(X_MT.axis[0]) +
+                        value_of(X_MT.axis[1]) * value_of(X_MT.axis[1]);
   if (square < kPoleHold_rad * kPoleHold_rad) {
-    q = lai::solve_held(model.lai, length, pose, S(reference[lai::kTheta1]));
+    q = lai::solve_held(model.lai, length, X_MT, S(reference[lai::kTheta1]));
     wind(q, lai::kTheta2, reference);
     return SolveStatus::kAtPole;
   }
-  const S radius = hypot(pose.axis[0], pose.axis[1]);
-  q = lai::solve(model.lai, length, pose, kBranchSign[branch != 0], radius);
+  const S radius = hypot(X_MT.axis[0], X_MT.axis[1]);
+  q = lai::solve(model.lai, length, X_MT, kBranchSign[branch != 0], radius);
   wind(q, lai::kTheta1, reference);
   wind(q, lai::kTheta2, reference);
   return SolveStatus::kOk;
@@ -181,17 +181,17 @@ template <class S>
 template <class S>
 [[nodiscard, gnu::noinline]] inline SolveStatus solve_chain(const MachineModel& model,
                                                             double tool_length_mm,
-                                                            const Pose<S>& pose, int branch,
+                                                            const Pose<S>& X_MT, int branch,
                                                             const JointVector& reference,
                                                             Joints<S>& q) noexcept {
   const ChainKinematics& k = model.chain;
-  const Vec3<S> z = made_unit(chain::in_frame_a(k, pose.axis));
+  const Vec3<S> z = made_unit(chain::in_frame_a(k, X_MT.axis));
   if (chain::is_at_pole(k, z, kPoleHold_rad)) {
-    const bool is_solved = chain::solve_held(k, tool_length_mm, pose, S(reference[k.a.joint]), q);
+    const bool is_solved = chain::solve_held(k, tool_length_mm, X_MT, S(reference[k.a.joint]), q);
     wind(q, k.b.joint, reference);
     return is_solved ? SolveStatus::kAtPole : SolveStatus::kUnreachable;
   }
-  const bool is_solved = chain::solve(k, tool_length_mm, pose.tip, z, kBranchSign[branch != 0], q);
+  const bool is_solved = chain::solve(k, tool_length_mm, X_MT.tip, z, kBranchSign[branch != 0], q);
   wind(q, k.a.joint, reference);
   wind(q, k.b.joint, reference);
   return is_solved ? SolveStatus::kOk : SolveStatus::kUnreachable;
@@ -203,9 +203,9 @@ template <class S>
                                                             const Pose<S>& any, int branch,
                                                             const JointVector& reference,
                                                             Joints<S>& q) noexcept {
-  const Pose<S> pose{any.tip, made_unit(any.axis)};
+  const Pose<S> X_MT{any.tip, made_unit(any.axis)};
   bool is_held = false;
-  if (!robot::solve(model.robot, tool_length_mm, pose, branch, reference, q, is_held)) {
+  if (!robot::solve(model.robot, tool_length_mm, X_MT, branch, reference, q, is_held)) {
     return SolveStatus::kUnreachable;
   }
   for (int i = 0; i < model.joint_count; ++i) wind(q, i, reference);
@@ -214,7 +214,7 @@ template <class S>
 
 }  // namespace detail
 
-/// Returns the joints that put the tool at `pose` with the redundant joint (see redundant_joint) at
+/// Returns the joints that put the tool at `X_WT` with the redundant joint (see redundant_joint) at
 /// `free`.
 ///
 /// The tip is exact for any value; the axis is the nearest one that the machine has with its free
@@ -222,16 +222,16 @@ template <class S>
 /// kUnreachable. Frame: W. RT: cycle. Proof: tests/property/kinematics.
 template <class S>
 [[nodiscard]] inline Solution<S> solve_held(const MachineModel& model, double tool_length_mm,
-                                            const Pose<S>& pose, const S& free) noexcept {
-  const Pose<S> in_machine = pose_in_machine(model, pose);
+                                            const Pose<S>& X_WT, const S& free) noexcept {
+  const Pose<S> X_MT = pose_in_machine(model, X_WT);
   Solution<S> out{{}, SolveStatus::kOk};
   bool is_reachable = true;
   switch (model.family) {
     case MachineFamily::kLai:
-      out.q = lai::solve_held(model.lai, model.lai.pivot_mm + tool_length_mm, in_machine, free);
+      out.q = lai::solve_held(model.lai, model.lai.pivot_mm + tool_length_mm, X_MT, free);
       break;
     case MachineFamily::kChain:
-      is_reachable = chain::solve_held(model.chain, tool_length_mm, in_machine, free, out.q);
+      is_reachable = chain::solve_held(model.chain, tool_length_mm, X_MT, free, out.q);
       break;
     case MachineFamily::kRobot:
       is_reachable = false;
@@ -241,7 +241,7 @@ template <class S>
   return out;
 }
 
-/// Returns the joints that put the tool at `pose`, on `branch` and with every rotary joint in the
+/// Returns the joints that put the tool at `X_WT`, on `branch` and with every rotary joint in the
 /// winding nearest to `reference`.
 ///
 /// It follows: neighbouring poses of a path give neighbouring joints, so a rotary joint that leaves
@@ -252,19 +252,19 @@ template <class S>
 /// checked here. Frame: W. RT: cycle. Proof: tests/golden, tests/property/kinematics.
 template <class S>
 [[nodiscard]] inline Solution<S> solve(const MachineModel& model, double tool_length_mm,
-                                       const Pose<S>& pose, int branch,
+                                       const Pose<S>& X_WT, int branch,
                                        const JointVector& reference) noexcept {
-  const Pose<S> in_machine = pose_in_machine(model, pose);
+  const Pose<S> X_MT = pose_in_machine(model, X_WT);
   Solution<S> out;
   switch (model.family) {
     case MachineFamily::kLai:
-      out.status = detail::solve_lai(model, tool_length_mm, in_machine, branch, reference, out.q);
+      out.status = detail::solve_lai(model, tool_length_mm, X_MT, branch, reference, out.q);
       break;
     case MachineFamily::kChain:
-      out.status = detail::solve_chain(model, tool_length_mm, in_machine, branch, reference, out.q);
+      out.status = detail::solve_chain(model, tool_length_mm, X_MT, branch, reference, out.q);
       break;
     case MachineFamily::kRobot:
-      out.status = detail::solve_robot(model, tool_length_mm, in_machine, branch, reference, out.q);
+      out.status = detail::solve_robot(model, tool_length_mm, X_MT, branch, reference, out.q);
       break;
   }
   if (!detail::all_finite(out.q)) out.status = SolveStatus::kUnreachable;

@@ -41,18 +41,18 @@ inline void place_tip(const LaiKinematics& constants, double length, const Vec3<
 /// call. The axis need not be exactly unit. Windings are the caller's.
 template <class S>
 [[nodiscard]] inline Joints<S> solve(const LaiKinematics& constants, double length,
-                                     const Pose<S>& pose, double branch_sign,
+                                     const Pose<S>& X_MT, double branch_sign,
                                      const S& radius) noexcept {
-  const S x = branch_sign * pose.axis[0];
-  const S y = branch_sign * pose.axis[1];
+  const S x = branch_sign * X_MT.axis[0];
+  const S y = branch_sign * X_MT.axis[1];
   const S r = branch_sign * radius;
   const S per_radius = 1.0 / radius;
-  const S per_norm = 1.0 / hypot(radius, pose.axis[2]);
+  const S per_norm = 1.0 / hypot(radius, X_MT.axis[2]);
   Joints<S> q{};
   q[kTheta1] = atan2(y, x);
-  q[kTheta2] = atan2(r, pose.axis[2]);
-  place_tip(constants, length, pose.tip, SinCos<S>{y * per_radius, x * per_radius},
-            SinCos<S>{r * per_norm, pose.axis[2] * per_norm}, q);
+  q[kTheta2] = atan2(r, X_MT.axis[2]);
+  place_tip(constants, length, X_MT.tip, SinCos<S>{y * per_radius, x * per_radius},
+            SinCos<S>{r * per_norm, X_MT.axis[2] * per_norm}, q);
   return q;
 }
 
@@ -60,14 +60,14 @@ template <class S>
 /// the wanted axis that this theta1 allows. theta2 lies in [-π, π].
 template <class S>
 [[nodiscard]] inline Joints<S> solve_held(const LaiKinematics& constants, double length,
-                                          const Pose<S>& pose, const S& theta1) noexcept {
+                                          const Pose<S>& X_MT, const S& theta1) noexcept {
   const SinCos<S> turn = sin_cos(theta1);
-  const S along = pose.axis[0] * turn.cos + pose.axis[1] * turn.sin;
-  const S per_norm = 1.0 / hypot(along, pose.axis[2]);
+  const S along = X_MT.axis[0] * turn.cos + X_MT.axis[1] * turn.sin;
+  const S per_norm = 1.0 / hypot(along, X_MT.axis[2]);
   Joints<S> q{};
   q[kTheta1] = theta1;
-  q[kTheta2] = atan2(along, pose.axis[2]);
-  place_tip(constants, length, pose.tip, turn, SinCos<S>{along * per_norm, pose.axis[2] * per_norm},
+  q[kTheta2] = atan2(along, X_MT.axis[2]);
+  place_tip(constants, length, X_MT.tip, turn, SinCos<S>{along * per_norm, X_MT.axis[2] * per_norm},
             q);
   return q;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "meridian/geometry/rigid_transform.hpp"
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/kinematics/chain.hpp"
 #include "meridian/kinematics/joints.hpp"
@@ -104,9 +105,7 @@ struct MachineModel {
   KeepOut keep_out;                                  ///< where the joints may not stand together
   TipBox tip_box;             ///< what the tool tip stays inside of, over the base
   double tool_length_mm = 0;  ///< tool in the spindle when the service starts
-  Eigen::Matrix3d frame_rotation =
-      Eigen::Matrix3d::Identity();  ///< workpiece W in the frame of the kinematics
-  Vector3 frame_origin_mm = Vector3::Zero();
+  RigidTransform X_MW;        ///< workpiece W in the frame M of the kinematics
   Tolerances tolerances;
   Transition transition = Transition::kExactStop;  ///< of programs that do not ask for another
   PolePolicy pole_policy = PolePolicy::kEase;

@@ -190,7 +190,7 @@ cl::ClReaderOptions reader_options(const ClFileOptions& options) {
   out.first_line = options.first_line;
   for (const std::string& zero : options.work_zeros) out.work_offsets.insert(parse_work_zero(zero));
   if (!options.frame.empty()) {
-    const config::Frame frame = config::parse_frame(options.frame);
+    const RigidTransform frame = config::parse_frame(options.frame);
     out.frame = cl::Frame{frame.rotation, frame.origin_mm};
   }
   return out;

@@ -143,7 +143,7 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
 
 std::optional<Vector3> axis_of_work_frame(const std::string& word) {
   MachineModel in_frame;
-  in_frame.frame_rotation = Eigen::Matrix3d::Identity();
+  in_frame.X_MW.rotation = Eigen::Matrix3d::Identity();
   return direction_of(word, in_frame);
 }
 

@@ -147,7 +147,7 @@ std::optional<Vector3> direction_of(const std::string& word, const MachineModel&
   if (word.size() != 2 || (word[0] != '-' && word[0] != '+')) return std::nullopt;
   const std::size_t axis = kAxes.find(word[1]);
   if (axis == std::string_view::npos) return std::nullopt;
-  const Vector3 direction = machine.frame_rotation.col(static_cast<Eigen::Index>(axis));
+  const Vector3 direction = machine.X_MW.rotation.col(static_cast<Eigen::Index>(axis));
   return word[0] == '-' ? Vector3(-direction) : direction;
 }
 

@@ -38,9 +38,9 @@ static_assert(std::is_trivially_copyable_v<SetUpInForce>);
 /// RT: cycle.
 inline void place(MachineModel& model, const SetUpInForce& set_up) noexcept {
   for (int i = 0; i < 9; ++i) {
-    model.frame_rotation(i / 3, i % 3) = set_up.rotation[static_cast<std::size_t>(i)];
+    model.X_MW.rotation(i / 3, i % 3) = set_up.rotation[static_cast<std::size_t>(i)];
   }
-  model.frame_origin_mm = to_vector(set_up.origin_mm);
+  model.X_MW.origin_mm = to_vector(set_up.origin_mm);
   shrink_travel(model, set_up.travel);
 }
 

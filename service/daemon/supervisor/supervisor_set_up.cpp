@@ -21,14 +21,12 @@ SetUpInForce in_force_by(const telemetry::SetUp& set_up, const MachineModel& mac
                          const ToolTable& tools, std::uint32_t change) {
   const WorkFrames& frames = set_up.frames;
   const WorkFrame* const row = frames.find(frames.active());
-  const config::Frame frame = row != nullptr
-                                  ? config::frame_of(*row)
-                                  : config::Frame{machine.frame_rotation, machine.frame_origin_mm};
+  const RigidTransform X_MW = row != nullptr ? config::frame_of(*row) : machine.X_MW;
   SetUpInForce out;
   out.change = change;
   out.number = static_cast<std::uint8_t>(frames.active());
-  out.rotation = stream::rows_of(frame.rotation);
-  out.origin_mm = to_array(frame.origin_mm);
+  out.rotation = stream::rows_of(X_MW.rotation);
+  out.origin_mm = to_array(X_MW.origin_mm);
   out.sum = stream::frame_sum(out.rotation, out.origin_mm, frames.rows());
   out.tools = stream::tools_sum(tools);
   out.soft_limits = set_up.limits;

@@ -45,8 +45,8 @@ double distance_to(const ProbedShape& shape, const Vector3& point) noexcept {
 
 SimulatedProbe::SimulatedProbe(ProbedPart part, MachineModel machine)
     : part_(std::move(part)), machine_(std::move(machine)) {
-  machine_.frame_rotation = Eigen::Matrix3d::Identity();
-  machine_.frame_origin_mm = Vector3::Zero();
+  machine_.X_MW.rotation = Eigen::Matrix3d::Identity();
+  machine_.X_MW.origin_mm = Vector3::Zero();
 }
 
 double SimulatedProbe::distance(const JointVector& drives) const noexcept {

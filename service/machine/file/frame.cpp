@@ -67,19 +67,16 @@ std::array<double, 6> parse_frame_values(std::string_view text) {
   return values;
 }
 
-Frame parse_frame(std::string_view text) {
+RigidTransform parse_frame(std::string_view text) {
   const std::array<double, 6> values = parse_frame_values(text);
   return {rotation_from_deg(values[3], values[4], values[5]), {values[0], values[1], values[2]}};
 }
 
-Frame frame_of(const WorkFrame& row) {
+RigidTransform frame_of(const WorkFrame& row) {
   const auto [a, b, c] = row.rotation_deg;
   return {rotation_from_deg(a, b, c), to_vector(row.origin_mm)};
 }
 
-void place_workpiece(MachineModel& model, const Frame& frame) {
-  model.frame_rotation = frame.rotation;
-  model.frame_origin_mm = frame.origin_mm;
-}
+void place_workpiece(MachineModel& model, const RigidTransform& X_MW) { model.X_MW = X_MW; }
 
 }  // namespace meridian::config

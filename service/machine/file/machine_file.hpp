@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "meridian/geometry/rigid_transform.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/kinematics/tool_table.hpp"
 #include "meridian/kinematics/work_frame.hpp"
@@ -34,22 +35,16 @@ namespace meridian::config {
 [[nodiscard]] std::string to_text(const ToolTable& tools,
                                   const std::map<std::string, std::uint32_t>& names = {});
 
-/// Where the workpiece lies in the frame of the kinematics. rotation = Rz(c) Ry(b) Rx(a).
-struct Frame {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Vector3 origin_mm = Vector3::Zero();
-};
-
 /// Reads `x,y,z` or `x,y,z,a,b,c` (mm and deg), the argument of --frame. Throws ConfigError whose
 /// file is `--frame`. Proof: tests/unit/machine_file/frame_test.cpp.
-[[nodiscard]] Frame parse_frame(std::string_view text);
+[[nodiscard]] RigidTransform parse_frame(std::string_view text);
 
 /// The same six numbers as a row of the set-up has them: equal numbers give equal bits.
 [[nodiscard]] std::array<double, 6> parse_frame_values(std::string_view text);
-[[nodiscard]] Frame frame_of(const WorkFrame& row);
+[[nodiscard]] RigidTransform frame_of(const WorkFrame& row);
 
 /// Puts the workpiece of `model` at `frame`.
-void place_workpiece(MachineModel& model, const Frame& frame);
+void place_workpiece(MachineModel& model, const RigidTransform& X_MW);
 
 /// Returns the rotation Rz(c) Ry(b) Rx(a) of angles in degrees; multiples of 90° are exact.
 [[nodiscard]] Eigen::Matrix3d rotation_from_deg(double a_deg, double b_deg, double c_deg);

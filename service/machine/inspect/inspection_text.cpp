@@ -177,7 +177,7 @@ std::string to_text(const Inspection& in, const MachineModel& model) {
   std::string out = "machine    " + model.name;
   out +=
       printed(", %d joints, tool of %.6g mm, workpiece at %s mm in the machine\n",
-              model.joint_count, model.tool_length_mm, vector_text(model.frame_origin_mm).c_str());
+              model.joint_count, model.tool_length_mm, vector_text(model.X_MW.origin_mm).c_str());
   out += chain_text(in, model);
   out += "home       " + pose_text(in.home_pose) + " in the workpiece\n";
   out += trial_text(in, model) + pole_text(in, model) + reach_text(in) + limits_text(model);

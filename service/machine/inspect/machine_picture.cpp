@@ -128,11 +128,11 @@ void print_scene(std::FILE* out, const Scene& scene) {
     if (joint.is_rotary) pivots.push_back(joint.point);
   }
   print_block(out, "pivots", pivots);
-  const Vector3& origin = scene.model.frame_origin_mm;
+  const Vector3& origin = scene.model.X_MW.origin_mm;
   std::string labels;
   std::fputs("$frame << EOD\n", out);
   for (int i = 0; i < 3; ++i) {
-    const Vector3 by = 0.6 * scene.length * scene.model.frame_rotation.col(i);
+    const Vector3 by = 0.6 * scene.length * scene.model.X_MW.rotation.col(i);
     print_point(out, origin);
     std::fputs(" ", out);
     print_point(out, by);

@@ -108,7 +108,7 @@ MachinePosture posture_at(const MachineModel& model, const JointVector& q, doubl
   posture.joints = q;
   posture.head = chain_of(tree.head, q, tree.gauge_mm);
   posture.tip = chain_of(tree.head, q, tree.gauge_mm - tool_length_mm * tree.axis).back();
-  posture.table = chain_of(tree.table, q, model.frame_origin_mm);
+  posture.table = chain_of(tree.table, q, model.X_MW.origin_mm);
   if (has_stage(model)) posture.stage = stage_at(model, tree, q);
   return posture;
 }

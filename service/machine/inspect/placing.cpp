@@ -134,8 +134,8 @@ MachineModel placed(MachineModel model, const std::array<double, 3>& origin_mm, 
   const double c = std::cos(turn_rad), s = std::sin(turn_rad);
   Eigen::Matrix3d about_z;
   about_z << c, -s, 0, s, c, 0, 0, 0, 1;
-  model.frame_rotation = about_z * model.frame_rotation;
-  model.frame_origin_mm = Vector3(origin_mm[0], origin_mm[1], origin_mm[2]);
+  model.X_MW.rotation = about_z * model.X_MW.rotation;
+  model.X_MW.origin_mm = Vector3(origin_mm[0], origin_mm[1], origin_mm[2]);
   return model;
 }
 
@@ -144,7 +144,7 @@ PlacingBox widest_box(const MachineModel& model, const std::vector<ProgramPose>&
   constexpr std::array kBases = {2, 3, 5, 7, 11, 13};
   Vector3 middle = Vector3::Zero();
   for (const ProgramPose& at : poses) {
-    middle += model.frame_rotation * at.pose.tip / static_cast<double>(poses.size());
+    middle += model.X_MW.rotation * at.pose.tip / static_cast<double>(poses.size());
   }
   const MachineModel bare = placed(model, {0, 0, 0}, 0);
   PlacingBox box;
@@ -158,7 +158,7 @@ PlacingBox widest_box(const MachineModel& model, const std::vector<ProgramPose>&
       const double high = joint.is_endless ? std::numbers::pi : joint.limits.travel_max;
       q[i] = low + spread(n + 1, kBases[static_cast<std::size_t>(i)]) * (high - low);
     }
-    const Vector3 tip = bare.frame_rotation * forward(bare, bare.tool_length_mm, q).tip;
+    const Vector3 tip = bare.X_MW.rotation * forward(bare, bare.tool_length_mm, q).tip;
     for (std::size_t i = 0; i < 3; ++i) {
       const double at = tip[static_cast<Eigen::Index>(i)] - middle[static_cast<Eigen::Index>(i)];
       box.low_mm[i] = std::min(box.low_mm[i], at);

@@ -58,12 +58,12 @@ std::string finding_text(const FitFinding& finding, const MachineModel& model) {
 
 std::string frame_text(const MachineModel& placed_model) {
   // Rz(c) Ry(b) Rx(a), as config::rotation_from_deg() makes it.
-  const Eigen::Matrix3d& r = placed_model.frame_rotation;
+  const Eigen::Matrix3d& r = placed_model.X_MW.rotation;
   const double b = std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)));
   const bool is_upright = std::hypot(r(0, 0), r(1, 0)) > 1e-9;
   const double a = is_upright ? std::atan2(r(2, 1), r(2, 2)) : std::atan2(-r(1, 2), r(1, 1));
   const double c = is_upright ? std::atan2(r(1, 0), r(0, 0)) : 0;
-  const Vector3& o = placed_model.frame_origin_mm;
+  const Vector3& o = placed_model.X_MW.origin_mm;
   const auto deg = [](double rad) {
     const double value = units::deg_from_rad(rad);
     return std::abs(value) < 5e-7 ? 0.0 : value;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/kinematics/jacobian.hpp"
 #include "service/machine/inspect/pose_solutions.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "meridian/kinematics/jacobian.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/units.hpp"
@@ -84,7 +84,7 @@ std::string why_unreachable(const MachineModel& model, const ToolPose& pose) {
     return "the arm does not reach there with the tool so: the wrist would have to stand nearer or "
            "farther than the links allow";
   }
-  const Vector3 axis = model.frame_rotation * pose.axis;
+  const Vector3 axis = model.X_MW.rotation * pose.axis;
   const double lean =
       std::atan2(axis.cross(model.chain.a.axis).norm(), axis.dot(model.chain.a.axis));
   const chain::Reach reach = chain::reach(model.chain);

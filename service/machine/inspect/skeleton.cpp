@@ -43,7 +43,7 @@ Skeleton chain_skeleton(const MachineModel& model) {
                         joint.is_table_side ? Side::kTable : Side::kTool, joint.direction,
                         joint.point_mm});
   }
-  lay_bodies(s, model.frame_origin_mm);
+  lay_bodies(s, model.X_MW.origin_mm);
   return s;
 }
 
@@ -60,7 +60,7 @@ Skeleton lai_skeleton(const MachineModel& model) {
               {lai::kB3, false, Side::kRelative, Vector3::UnitX(), none},
               {lai::kB4, false, Side::kRelative, -Vector3::UnitZ(), none},
               {lai::kTheta2, true, Side::kRelative, Vector3::UnitY(), pivot}};
-  s.table = {model.frame_origin_mm, {0, 0, model.frame_origin_mm[2]}};
+  s.table = {model.X_MW.origin_mm, {0, 0, model.X_MW.origin_mm[2]}};
   s.joints[0].point = s.table.back();
   s.arm = {pivot, s.gauge};
   return s;
@@ -100,7 +100,7 @@ Skeleton robot_skeleton(const MachineModel& model) {
     s.joints.push_back({robot::kPitch, true, Side::kTool, -en, wrist});
     s.joints.push_back({robot::kTilt, true, Side::kTool, along(psi + std::numbers::pi / 2), wrist});
   }
-  s.table = {model.frame_origin_mm};
+  s.table = {model.X_MW.origin_mm};
   s.arm = {base, shoulder, elbow, wrist, s.gauge};
   return s;
 }

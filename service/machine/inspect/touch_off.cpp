@@ -220,7 +220,7 @@ void turn(Search& search, int axis, const Vector3& normal, int kept = -1) {
 
 Expected<FoundFrame, std::string> find_frame(TouchedShape shape, const std::vector<Touch>& touches,
                                              const MachineModel& before) {
-  Search search{before, before.frame_rotation, before.frame_origin_mm, ""};
+  Search search{before, before.X_MW.rotation, before.X_MW.origin_mm, ""};
   FoundFrame found;
   std::array<Group, 3> groups;
   std::string error;

@@ -80,8 +80,8 @@ Expected<std::vector<Touch>, std::string> read_touches(std::string_view text,
 }
 
 ToolPose pose_of(const Touch& touch, MachineModel machine) {
-  machine.frame_rotation = Eigen::Matrix3d::Identity();
-  machine.frame_origin_mm = Vector3::Zero();
+  machine.X_MW.rotation = Eigen::Matrix3d::Identity();
+  machine.X_MW.origin_mm = Vector3::Zero();
   return forward(machine, touch.tool_length_mm, touch.joints);
 }
 

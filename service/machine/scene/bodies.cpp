@@ -74,9 +74,9 @@ std::vector<Body> bodies_of(const MachineModel& model, const LinkFrames& frames,
   // The plate below the workpiece, spindle and tool.
   const int plate = static_cast<int>(table.size()) - 1;
   const Vector3 under = plate >= 0 ? table.back() : Vector3::Zero();
-  const Vector3 normal = model.frame_rotation.col(2);
+  const Vector3 normal = model.X_MW.rotation.col(2);
   builder.bodies.push_back({frames.table_name(plate), Shape::kCylinder, Part::kTable,
-                            model.frame_origin_mm - 0.07 * size * normal - under, normal,
+                            model.X_MW.origin_mm - 0.07 * size * normal - under, normal,
                             0.14 * size, 2.4 * size});
   const double spindle = 0.6 * size, tool = std::max(tool_length_mm, 1.0);
   builder.bodies.push_back({"tool", Shape::kCylinder, Part::kMoving,

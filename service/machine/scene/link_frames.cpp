@@ -34,12 +34,12 @@ Eigen::Quaterniond from_z_to(const Vector3& axis) noexcept {
 LinkFrames::LinkFrames(const MachineModel& model)
     : tree_(link_tree(model)),
       head_(anchors_of(tree_.head, tree_.gauge_mm)),
-      table_(anchors_of(tree_.table, model.frame_origin_mm)) {
+      table_(anchors_of(tree_.table, model.X_MW.origin_mm)) {
   for (int i = 0; i < model.joint_count; ++i) {
     joint_names_.push_back(model.joints[static_cast<std::size_t>(i)].name);
   }
-  home_workpiece_.linear() = model.frame_rotation;
-  home_workpiece_.translation() = model.frame_origin_mm;
+  home_workpiece_.linear() = model.X_MW.rotation;
+  home_workpiece_.translation() = model.X_MW.origin_mm;
   std::string parent = root();
   for (const auto* screws : {&tree_.head, &tree_.table}) {
     parent = root();

@@ -14,8 +14,8 @@ constexpr int kWaiting = 64;  ///< of several groups of drives, or services, bet
 /// Whether ROS 2 has a description of the machine that does not hold any more.
 [[nodiscard]] bool is_outdated(const MachineModel& published, const MachineModel& now) {
   return published.tool_length_mm != now.tool_length_mm ||
-         published.frame_origin_mm != now.frame_origin_mm ||
-         published.frame_rotation != now.frame_rotation;
+         published.X_MW.origin_mm != now.X_MW.origin_mm ||
+         published.X_MW.rotation != now.X_MW.rotation;
 }
 
 }  // namespace

@@ -40,10 +40,10 @@ class MachineAxes {
   [[nodiscard]] double axis_tolerance_rad() const noexcept { return model_.tolerances.axis_rad; }
 
   /// Axes of W, seen along the machine's: program coordinates are `to_program() * w`.
-  [[nodiscard]] const Eigen::Matrix3d& to_program() const noexcept { return model_.frame_rotation; }
+  [[nodiscard]] const Eigen::Matrix3d& to_program() const noexcept { return model_.X_MW.rotation; }
 
   /// Where the zero of the station's frame lies in the frame of the kinematics.
-  [[nodiscard]] const Vector3& zero_mm() const noexcept { return model_.frame_origin_mm; }
+  [[nodiscard]] const Vector3& zero_mm() const noexcept { return model_.X_MW.origin_mm; }
 
   /// One axis of a move to the machine's own places.
   struct Target {

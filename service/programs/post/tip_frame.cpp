@@ -35,7 +35,7 @@ Expected<JointVector, PostError> find_program_zero(const MachineModel& model,
     }
     const Vector3 by_joint = motion.col(joints[k]).head<3>();
     by_words.col(k) = words.sign(joints[k]) * by_joint;
-    if (!((model.frame_rotation * by_words.col(k))[k] > kAlong)) {
+    if (!((model.X_MW.rotation * by_words.col(k))[k] > kAlong)) {
       return tl::make_unexpected(refuse(
           model, "word " + address + " does not move the tool along +" + address +
                      " of the part: check nc_word of joint " + model.joints[joints[k]].name));
@@ -48,7 +48,7 @@ Expected<JointVector, PostError> find_program_zero(const MachineModel& model,
 }
 
 ToolPose in_program(const MachineModel& model, const ToolPose& pose) {
-  return {model.frame_rotation * pose.tip, model.frame_rotation * pose.axis};
+  return {model.X_MW.rotation * pose.tip, model.X_MW.rotation * pose.axis};
 }
 
 }  // namespace meridian::post

@@ -135,7 +135,7 @@ TEST(CertifiedPrograms, KeepEveryLimitFromRestToRest) {
     MachineModel model = seed % 5 == 0   ? hybrid_machine()
                          : seed % 2 == 0 ? bench_machine()
                                          : lai_machine();
-    if (draw.chance(0.4)) model.frame_rotation = draw.rotation(draw.chance(0.5) ? 0.3 : 3.0);
+    if (draw.chance(0.4)) model.X_MW.rotation = draw.rotation(draw.chance(0.5) ? 0.3 : 3.0);
     if (draw.chance(0.5)) draw_limits(draw, model);
     const JointVector start = draw.start(model);
     expect_certified(model, draw.program(model, 12), start, Transition::kExactStop, seed, all);

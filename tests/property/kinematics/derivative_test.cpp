@@ -18,8 +18,8 @@ JointVector draw_joints(test::RandomPoses& draw) {
 
 MachineModel turned_machine() {
   MachineModel model = test::lai_machine();
-  model.frame_rotation << 0, -1, 0, 0.6, 0, -0.8, 0.8, 0, 0.6;
-  model.frame_origin_mm = {5, 6, 7};
+  model.X_MW.rotation << 0, -1, 0, 0.6, 0, -0.8, 0.8, 0, 0.6;
+  model.X_MW.origin_mm = {5, 6, 7};
   return model;
 }
 

@@ -81,7 +81,7 @@ TEST_F(DrivenYawAndRoll, KeepsTheTipInTheArmPlaneWithAnyRoll) {
     const auto found = solve_both(pose, q);
     ASSERT_EQ(found.status, SolveStatus::kOk);
     const Vector3 off = forward(model_, tool_mm_, found.q).tip - pose.tip;
-    const Vector3 off_in_machine = model_.frame_rotation * off;
+    const Vector3 off_in_machine = model_.X_MW.rotation * off;
     const double reach =
         std::cos(q[kYaw]) * off_in_machine.x() + std::sin(q[kYaw]) * off_in_machine.y();
     ASSERT_LT(std::hypot(reach, off_in_machine.z()), kTip_mm) << "pose " << n;

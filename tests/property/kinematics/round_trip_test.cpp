@@ -18,10 +18,10 @@ constexpr double kAxisTolerance_rad = 1e-12;
 /// A machine with an oblique workpiece frame, so that nothing cancels by luck.
 MachineModel oblique_machine() {
   MachineModel model = test::lai_machine();
-  model.frame_rotation = (Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
-                          Eigen::AngleAxisd(-0.4, Eigen::Vector3d::UnitY()))
-                             .toRotationMatrix();
-  model.frame_origin_mm = {31, -57, 12};
+  model.X_MW.rotation = (Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
+                         Eigen::AngleAxisd(-0.4, Eigen::Vector3d::UnitY()))
+                            .toRotationMatrix();
+  model.X_MW.origin_mm = {31, -57, 12};
   return model;
 }
 

@@ -101,8 +101,8 @@ void check(const MachineModel& model, const Trace& trace, const std::vector<ClBl
 
 MachineModel draw_machine(RandomPrograms& draw) {
   MachineModel model = draw.chance(0.5) ? lai_machine() : bench_machine();
-  if (draw.chance(0.4)) model.frame_rotation = draw.rotation(draw.chance(0.5) ? 0.3 : 3.0);
-  if (draw.chance(0.5)) model.frame_origin_mm = {draw.uniform(-50, 50), draw.uniform(-50, 50), 20};
+  if (draw.chance(0.4)) model.X_MW.rotation = draw.rotation(draw.chance(0.5) ? 0.3 : 3.0);
+  if (draw.chance(0.5)) model.X_MW.origin_mm = {draw.uniform(-50, 50), draw.uniform(-50, 50), 20};
   if (draw.chance(0.5)) {  // other ratios of the limits make other terms the critical ones
     for (int group = 0; group < 2; ++group) {
       const double v = draw.log_uniform(0.3, 3), a = draw.log_uniform(0.2, 20),

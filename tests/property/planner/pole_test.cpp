@@ -97,13 +97,13 @@ TEST(Pole, IsPassedAtAnyDistance) {
   for (const bool is_turned : {false, true}) {
     MachineModel model = lai_machine();
     RandomPrograms draw(99);
-    if (is_turned) model.frame_rotation = draw.rotation(0.4);
+    if (is_turned) model.X_MW.rotation = draw.rotation(0.4);
     for (double exponent = -12; exponent <= 0.01; exponent += 0.5) {
       const double distance = units::rad_from_deg(std::pow(10.0, exponent));
       SCOPED_TRACE(testing::Message() << "1e" << exponent << " deg, frame " << is_turned);
       const auto beside = [&](double along) {
         const Vector3 in_machine = Vector3(std::sin(along), distance, std::cos(along)).normalized();
-        return Vector3(model.frame_rotation.transpose() * in_machine);
+        return Vector3(model.X_MW.rotation.transpose() * in_machine);
       };
       const std::vector<ClBlock> blocks = {cut(0, {-30, 0, 50}, beside(-0.3)),
                                            cut(1, {30, 10, 50}, beside(0.25))};

@@ -34,7 +34,7 @@ class RandomPrograms {
     if (has_stage(model)) azimuth -= 0.4 * std::remainder(azimuth, std::numbers::pi);
     const Vector3 in_machine(std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
                              std::cos(tilt));
-    return model.frame_rotation.transpose() * in_machine;
+    return model.X_MW.rotation.transpose() * in_machine;
   }
 
   /// A rotation of the workpiece by up to `most` rad about any axis.

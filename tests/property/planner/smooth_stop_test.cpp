@@ -299,13 +299,13 @@ TEST(SmoothStop, LeavesRoomForRoundingBesideThePole) {
     model.cycle_ns = 125'000;
     model.override_ramp_s = 1000;
     model.pole_policy = PolePolicy::kExact;
-    model.frame_rotation = draw.rotation(1.0);
+    model.X_MW.rotation = draw.rotation(1.0);
     const double distance = draw.log_uniform(8.2e-6, 1e-4), azimuth = draw.uniform(-3, 3);
     const auto beside = [&](double along) {
       const Vector3 axis = Vector3(std::sin(along), distance, std::cos(along)).normalized();
       const double c = std::cos(azimuth), s = std::sin(azimuth);
       const Vector3 turned(c * axis[0] - s * axis[1], s * axis[0] + c * axis[1], axis[2]);
-      return Vector3(model.frame_rotation.transpose() * turned);
+      return Vector3(model.X_MW.rotation.transpose() * turned);
     };
     const Vector3 at(draw.uniform(-150, 150), draw.uniform(-150, 150), 20);
     std::vector<ClBlock> blocks;

@@ -70,7 +70,7 @@ TEST(StopMargin, LeavesRoomForRoundingBesideThePole) {
   for (int n = 0; n < 60; ++n) {
     MachineModel model = lai_machine();
     model.cycle_ns = 125'000;
-    model.frame_rotation = draw.rotation(1.0);
+    model.X_MW.rotation = draw.rotation(1.0);
     const double distance = draw.log_uniform(8.01e-6, 1e-4);
     const double from = draw.chance(0.5) ? -draw.log_uniform(1e-5, 0.3) : draw.uniform(-1e-4, 1e-4);
     const double azimuth = draw.uniform(-3, 3);
@@ -78,7 +78,7 @@ TEST(StopMargin, LeavesRoomForRoundingBesideThePole) {
       const Vector3 axis = Vector3(std::sin(along), distance, std::cos(along)).normalized();
       const double c = std::cos(azimuth), s = std::sin(azimuth);
       const Vector3 turned(c * axis[0] - s * axis[1], s * axis[0] + c * axis[1], axis[2]);
-      return Vector3(model.frame_rotation.transpose() * turned);
+      return Vector3(model.X_MW.rotation.transpose() * turned);
     };
     const Vector3 at(draw.uniform(-150, 150), draw.uniform(-150, 150), 20);
     const std::vector<ClBlock> blocks = {
@@ -112,7 +112,7 @@ TEST(StopMargin, KeepsTheLimitsAndWastesLittleFromAnywhere) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomPrograms draw(seed);
     MachineModel model = draw.chance(0.5) ? lai_machine() : bench_machine();
-    if (draw.chance(0.3)) model.frame_rotation = draw.rotation(0.5);
+    if (draw.chance(0.3)) model.X_MW.rotation = draw.rotation(0.5);
     const auto blocks = draw.program(model, 3);
     const Trace trace = plan_program(model, blocks, draw.start(model));
     for (std::size_t k = 0; k < trace.times.size(); ++k) {

@@ -86,7 +86,7 @@ struct ReadBack {
       };
       return Vector3(word(x), word(y), word(z));
     };
-    const Eigen::Matrix3d from_machine = model.frame_rotation.transpose();
+    const Eigen::Matrix3d from_machine = model.X_MW.rotation.transpose();
     const Vector3 tip = from_machine * vector("X", "Y", "Z");
     switch (options.dialect) {
       case post::Dialect::kFanuc:

@@ -10,7 +10,7 @@ namespace {
 
 TEST(TouchOffOptions, NameDirectionsByTheAxesOfTheWorkFrame) {
   MachineModel machine;
-  machine.frame_rotation = config::rotation_from_deg(0, 0, 90);
+  machine.X_MW.rotation = config::rotation_from_deg(0, 0, 90);
   ASSERT_TRUE(direction_of("+x", machine));
   EXPECT_LT((*direction_of("+x", machine) - Vector3::UnitY()).norm(), 1e-15);
   EXPECT_LT((*direction_of("-y", machine) - Vector3::UnitX()).norm(), 1e-15);

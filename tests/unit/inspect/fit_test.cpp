@@ -76,7 +76,7 @@ TEST(Fit, SeesWhereTheTipLeavesItsBox) {
   ASSERT_GT(fit_of(model, poses).margin, 0);
   model.tip_box = {true, {-1e4, -1e4, -1e4}, {1e4, 1e4, 1e4}};
   EXPECT_EQ(fit_of(model, poses).tip_axis, -1);
-  model.tip_box.max[0] = model.frame_origin_mm[0] + 60;
+  model.tip_box.max[0] = model.X_MW.origin_mm[0] + 60;
   const Fit fit = fit_of(model, poses);
   EXPECT_EQ(fit.tip_axis, 0);
   EXPECT_LT(fit.margin, 0);

@@ -106,8 +106,8 @@ TEST(Placing, AFrameThatFitsPutsEveryPoseInsideTravel) {
       }
       MachineModel again = bare;
       config::place_workpiece(again, config::parse_frame(frame_text(model)));
-      EXPECT_LT((again.frame_rotation - model.frame_rotation).norm(), 1e-7);
-      EXPECT_LT((again.frame_origin_mm - model.frame_origin_mm).norm(), 2e-3);
+      EXPECT_LT((again.X_MW.rotation - model.X_MW.rotation).norm(), 1e-7);
+      EXPECT_LT((again.X_MW.origin_mm - model.X_MW.origin_mm).norm(), 2e-3);
     }
   }
   EXPECT_GT(fitting, 100);

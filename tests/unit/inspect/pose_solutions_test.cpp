@@ -111,7 +111,7 @@ TEST(PoseSolutions, SayWhichJointIsBeyondTravelAndByHowMuch) {
 
 TEST(PoseSolutions, AreNoneWhereTheToolCannotLeanSoFar) {
   const MachineModel model = config::load_machine(test::shipped_file("nutating-head"));
-  const Vector3 up = model.frame_rotation.transpose() * model.chain.a.axis;
+  const Vector3 up = model.X_MW.rotation.transpose() * model.chain.a.axis;
   const chain::Reach reach = chain::reach(model.chain);
   ASSERT_LT(reach.largest_rad, std::numbers::pi - 0.1);
   EXPECT_TRUE(solve_all(model, {Vector3::Zero(), -up}).empty());

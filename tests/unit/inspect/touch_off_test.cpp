@@ -36,7 +36,7 @@ struct Part {
     Touch touch = at(centre - Vector3(0, 0, kBall_mm));
     touch.radius_mm = kBall_mm;
     touch.is_ball = true;
-    touch.toward = -sign * machine.frame_rotation.col(axis);
+    touch.toward = -sign * machine.X_MW.rotation.col(axis);
     return touch;
   }
   /// The tool upright with its tip there.
@@ -75,7 +75,7 @@ TEST(TouchOff, OfACornerTouchedThreeTwoOnceFindsAnyTiltOfIt) {
 
 TEST(TouchOff, OfThreeFacesOnceEachMovesTheOriginAlone) {
   Part part;
-  part.rotation = part.machine.frame_rotation = turned(0, 0, 30);
+  part.rotation = part.machine.X_MW.rotation = turned(0, 0, 30);
   part.origin = Vector3(12, -7, 40);
   part.expect_found(find_frame(
       TouchedShape::kCorner,
@@ -85,7 +85,7 @@ TEST(TouchOff, OfThreeFacesOnceEachMovesTheOriginAlone) {
 
 TEST(TouchOff, OfAFaceTakesOffTheRadiusOfAFlankAndNothingOfATip) {
   Part part;
-  part.machine.frame_origin_mm = Vector3(1, 2, 3);
+  part.machine.X_MW.origin_mm = Vector3(1, 2, 3);
   Touch flank = part.at({50 - kFlat_mm, 20, 10});
   flank.radius_mm = kFlat_mm;
   flank.toward = Vector3::UnitX();
@@ -127,7 +127,7 @@ TEST(TouchOff, OfAPlaneTiltsTheFrameAndKeepsXNear) {
 
 TEST(TouchOff, OfABoreFindsItsMiddleFromThreeTouchesAndItsErrorFromFour) {
   Part part;
-  part.machine.frame_origin_mm = Vector3(1, 2, 3);
+  part.machine.X_MW.origin_mm = Vector3(1, 2, 3);
   constexpr double kBore_mm = 20;
   const auto touch = [&](double angle, double off_mm = 0) {
     const Vector3 out(std::cos(angle), std::sin(angle), 0);
@@ -172,8 +172,8 @@ TEST(TouchOff, SaysWhichTouchesAreMissing) {
 
 TEST(TouchOff, OfAToolGivesTheLengthThatItHas) {
   Part part;
-  part.machine.frame_rotation = turned(10, 0, 0);
-  part.machine.frame_origin_mm = Vector3(4, 5, 6);
+  part.machine.X_MW.rotation = turned(10, 0, 0);
+  part.machine.X_MW.origin_mm = Vector3(4, 5, 6);
   JointVector joints{};
   joints[0] = 12, joints[2] = -150;
   const double height = forward(part.machine, 97.25, joints).tip[2];
@@ -181,7 +181,7 @@ TEST(TouchOff, OfAToolGivesTheLengthThatItHas) {
   ASSERT_TRUE(length) << length.error();
   EXPECT_NEAR(*length, 97.25, 1e-9);
   EXPECT_FALSE(find_tool_length(joints, height + 100, part.machine));
-  part.machine.frame_rotation = turned(90, 0, 0);
+  part.machine.X_MW.rotation = turned(90, 0, 0);
   EXPECT_FALSE(find_tool_length(joints, height, part.machine));
 }
 

@@ -106,7 +106,7 @@ TEST(Kinematics, MeasuresTheDistanceToThePole) {
   EXPECT_NEAR(pole_distance(model, {std::sin(0.3), 0, std::cos(0.3)}), 0.3, kAngleTolerance_rad);
   EXPECT_NEAR(pole_distance(model, {0, 1e-11, 1}), 1e-11, 1e-26);
   EXPECT_NEAR(pole_distance(model, {0, 1e-11, -1}), 1e-11, 1e-26);
-  model.frame_rotation << 0, 0, 1, 0, 1, 0, -1, 0, 0;  // W lies on its side: +x of W is -z
+  model.X_MW.rotation << 0, 0, 1, 0, 1, 0, -1, 0, 0;  // W lies on its side: +x of W is -z
   EXPECT_NEAR(pole_distance(model, {1, 0, 0}), 0, kAngleTolerance_rad);
 }
 
@@ -135,8 +135,8 @@ TEST(Kinematics, WindsTheFirstPoseIntoTravel) {
 
 TEST(Kinematics, TurnsTheWorkpieceFrameWithItsRotation) {
   MachineModel model = test::lai_machine();
-  model.frame_rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;  // W turned by 90° about z
-  model.frame_origin_mm = {100, 10, 5};
+  model.X_MW.rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;  // W turned by 90° about z
+  model.X_MW.origin_mm = {100, 10, 5};
   const ToolPose pose{{7, 3, 2}, {0.6, 0, 0.8}};
   const auto s = solve(model, 110, pose, 0, JointVector{});
   EXPECT_NEAR(s.q[3], std::numbers::pi / 2, kAngleTolerance_rad);

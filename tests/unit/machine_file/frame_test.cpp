@@ -11,13 +11,13 @@ namespace {
 constexpr double kTolerance = 1e-15;  // a few eps of unit matrices
 
 TEST(Frame, OfThreeNumbersOnlyMovesTheWorkpiece) {
-  const Frame frame = parse_frame("1,-2.5,3e2");
+  const RigidTransform frame = parse_frame("1,-2.5,3e2");
   EXPECT_EQ(frame.origin_mm, Vector3(1, -2.5, 300));
   EXPECT_EQ(frame.rotation, Eigen::Matrix3d::Identity());
 }
 
 TEST(Frame, OfSixNumbersTurnsAboutXThenYThenZ) {
-  const Frame frame = parse_frame("0,0,0,10,20,30");
+  const RigidTransform frame = parse_frame("0,0,0,10,20,30");
   const double d = std::numbers::pi / 180;
   const Eigen::Matrix3d expected =
       (Eigen::AngleAxisd(30 * d, Vector3::UnitZ()) * Eigen::AngleAxisd(20 * d, Vector3::UnitY()) *
@@ -51,14 +51,15 @@ TEST(Frame, ThatIsNotOneIsRefusedWithAnExample) {
 TEST(Frame, PlacesTheWorkpieceOfAMachine) {
   MachineModel model;
   place_workpiece(model, parse_frame("1,2,3,0,0,180"));
-  EXPECT_EQ(model.frame_origin_mm, Vector3(1, 2, 3));
-  EXPECT_EQ(model.frame_rotation * Vector3(1, 0, 0), Vector3(-1, 0, 0));
+  EXPECT_EQ(model.X_MW.origin_mm, Vector3(1, 2, 3));
+  EXPECT_EQ(model.X_MW.rotation * Vector3(1, 0, 0), Vector3(-1, 0, 0));
 }
 
 TEST(Frame, OfASetUpRowIsThatOfTheSameNumbersBitForBit) {
   const auto [x, y, z, a, b, c] = parse_frame_values("10.1,-2.3,120.7,3.3,-7.7,33.1");
-  const Frame given = parse_frame("10.1,-2.3,120.7,3.3,-7.7,33.1");
-  const Frame row = frame_of({.number = 1, .origin_mm = {x, y, z}, .rotation_deg = {a, b, c}});
+  const RigidTransform given = parse_frame("10.1,-2.3,120.7,3.3,-7.7,33.1");
+  const RigidTransform row =
+      frame_of({.number = 1, .origin_mm = {x, y, z}, .rotation_deg = {a, b, c}});
   EXPECT_EQ(row.origin_mm, given.origin_mm);
   EXPECT_EQ(row.rotation, given.rotation);
 }

@@ -29,7 +29,7 @@ TEST(MachineFile, GivesTheConstantsOfTheLaiMachine) {
   EXPECT_DOUBLE_EQ(model.tolerances.axis_rad, units::rad_from_deg(0.1));
   EXPECT_EQ(model.pole_policy, PolePolicy::kEase);
   EXPECT_EQ(model.override_ramp_s, 1);
-  EXPECT_EQ(model.frame_rotation, Eigen::Matrix3d::Identity());
+  EXPECT_EQ(model.X_MW.rotation, Eigen::Matrix3d::Identity());
 }
 
 TEST(MachineFile, GivesJointsInMachineOrderAndHouseUnits) {
@@ -200,8 +200,8 @@ TEST(MachineFile, TakesFrameUnitAndCycleTime) {
   put("cycle_us = 1000", "cycle_us = 125");
   const test::TextFile file(text);
   const MachineModel model = load_machine(file.path());
-  EXPECT_EQ(model.frame_origin_mm, Vector3(1, 2.5, -3));
-  EXPECT_EQ(model.frame_rotation * Vector3(1, 0, 0), Vector3(0, 1, 0));
+  EXPECT_EQ(model.X_MW.origin_mm, Vector3(1, 2.5, -3));
+  EXPECT_EQ(model.X_MW.rotation * Vector3(1, 0, 0), Vector3(0, 1, 0));
   EXPECT_TRUE(model.default_unit_inch);
   EXPECT_EQ(model.cycle_ns, 125'000);
 }

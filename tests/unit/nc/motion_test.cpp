@@ -40,7 +40,7 @@ TEST(NcMotion, ReadsInchesInMillimetres) {
 
 TEST(WorkOffsets, LieWhereTheMachineHasThem) {
   MachineModel machine = shipped("trunnion-ac");
-  machine.frame_origin_mm = {10, 20, 30};
+  machine.X_MW.origin_mm = {10, 20, 30};
   ClReaderOptions options = on(machine);
   options.work_offsets = {{1, {110, 20, 30}}, {2, {10, 220, 30}}, {8, {10, 20, 330}}};
   const ReadText read = read_nc(

@@ -42,9 +42,9 @@ TEST(FrameSum, DistinguishesTablesThatProgramsMayCallFor) {
 TEST(FrameSum, IsThatOfTheFrameThatCameOverTheWire) {
   const MachineModel model = placed("10,-20,30,11,22,33");
   MachineModel other;
-  place_frame(other, rows_of(model.frame_rotation), to_array(model.frame_origin_mm));
-  EXPECT_EQ(other.frame_rotation, model.frame_rotation);
-  EXPECT_EQ(other.frame_origin_mm, model.frame_origin_mm);
+  place_frame(other, rows_of(model.X_MW.rotation), to_array(model.X_MW.origin_mm));
+  EXPECT_EQ(other.X_MW.rotation, model.X_MW.rotation);
+  EXPECT_EQ(other.X_MW.origin_mm, model.X_MW.origin_mm);
   EXPECT_EQ(frame_sum(other, {}), frame_sum(model, {}));
 }
 
