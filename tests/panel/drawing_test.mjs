@@ -214,7 +214,7 @@ async function aLongPathTurns({ page, browser }) {
 await runTests(plant, pictures, async (session, run) => {
   await plant.start();
   await run("ThePageIsSmall", thePageIsSmall);
-  session.open = await openBrowser(playwright, plant);
+  session.open = await openBrowser(playwright, plant, { isEachFrameDrawn: true });
   await run("TheFirstPictureComesSoon", theFirstPictureComesSoon, session.open);
   await run("WhatIsOutsideThePictureIsLeftOut", whatIsOutsideThePictureIsLeftOut, session.open);
   await run("ATurnIsDrawnPlainlyAndItsEndIsSmooth", aTurnIsDrawnPlainlyAndItsEndIsSmooth, session.open);

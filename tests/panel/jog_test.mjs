@@ -99,7 +99,7 @@ async function jogEndsWhen(session, name) {
       const { hand } = await press(session.open.page, isFinger);
       const { took, at } = await restAfter(() => lose(session.open, hand), name);
       if (back) await back(session.open);
-      if (isGone) session.open = await openBrowser(playwright, plant, "light");
+      if (isGone) session.open = await openBrowser(playwright, plant, { theme: "light" });
       else await session.open.page.mouse.up();
       await sleep(500);
       must(joint() === at, `${name}: the machine moved when the hand came back`);

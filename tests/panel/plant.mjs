@@ -182,7 +182,14 @@ export function findPlaywright(fetched) {
 // Rendering in software would take both cores of a small host: the machine comes first. MERIDIAN_PANEL_POLITE=0: it may.
 const kPolite = process.env.MERIDIAN_PANEL_POLITE === "0" ? "nice -n 0" : "nice -n 19 taskset -c 0";
 
-export async function openBrowser(playwright, { url, folder }, theme = "dark") {
+// Drawn in software, the picture takes a whole core wherever the machine moves: six pictures a second do where none is measured.
+const kPicture_ms = 150;
+const drawRarely = (wait_ms) => {
+  const draw = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (step) => setTimeout(() => draw(step), wait_ms);
+};
+
+export async function openBrowser(playwright, { url, folder }, { theme = "dark", isEachFrameDrawn = false } = {}) {
   const polite = join(folder, "chromium");
   writeFileSync(polite, `#!/bin/sh\nexec ${kPolite} ${kChromium} "$@"\n`, { mode: 0o755 });
   const server = await playwright.chromium.launchServer({ executablePath: polite, headless: true,
@@ -190,6 +197,7 @@ export async function openBrowser(playwright, { url, folder }, theme = "dark") {
     args: ["--no-sandbox", "--enable-unsafe-swiftshader"] });
   const browser = await playwright.chromium.connect(server.wsEndpoint());
   const context = await browser.newContext({ viewport: kSmall, colorScheme: theme });
+  if (!isEachFrameDrawn) await context.addInitScript(drawRarely, kPicture_ms);
   const page = await context.newPage();
   const errors = [];
   page.on("pageerror", (error) => errors.push(error.message));
