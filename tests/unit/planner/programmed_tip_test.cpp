@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "service/core/planner/singular/programmed_axis.hpp"
+
 namespace meridian {
 namespace {
 
@@ -18,6 +20,10 @@ TEST(ProgrammedTip, LiesStraightBetweenTheEndsOfBlocks) {
   EXPECT_NEAR(tip.distance_to(5, {5, 0, 0}), 0, kRounding_mm);
   EXPECT_NEAR(tip.distance_to(5, {5, 0, 0.25}), 0.25, kRounding_mm);
   EXPECT_NEAR(tip.distance_to(15, {10, 5, 0}), 0, kRounding_mm);
+}
+
+TEST(ProgrammedTip, IsKnownAsFarBackAsTheProgrammedAxis) {
+  EXPECT_EQ(ProgrammedTip::kCapacity, ProgrammedAxis::kCapacity);
 }
 
 TEST(ProgrammedTip, IsUnknownOutsideOfTheBlocksAndWhereItIsForgotten) {

@@ -155,6 +155,12 @@ TEST(StopMarginTable, CutsPhasesSoThatStopsOnTheEasyStretchUseMore) {
   }
 }
 
+TEST(StopMarginTable, CutsNoMoreThanItHasTo) {
+  const Granted got = uneven(0);
+  EXPECT_GE(got.cuts.size(), 8U);
+  EXPECT_LE(got.cuts.size(), 12U);
+}
+
 TEST(StopMarginTable, CutsNoPhaseWhereCellsDifferLittle) {
   const Granted got(cells_of(60, 0, [](int n) { return n < 40 ? 1.0 : 1.05; }), 0, 60);
   EXPECT_TRUE(got.cuts.empty());

@@ -56,6 +56,22 @@ TEST(TwoPass, KeepsTheFeedOfEveryCell) {
   EXPECT_NEAR(got.b[12], 400, 1e-9);
 }
 
+TEST(TwoPass, AJointThatTurnsRoundBoundsTheSpeedByItsCurvatureAlone) {
+  for (const bool is_end : {false, true}) {
+    for (const double bend : {5.0, -5.0}) {
+      MadeCells cells(kCells, 0.5, 1e9);
+      CellSample& at = is_end ? cells.grid[20].at.back() : cells.grid[20].at.front();
+      at.d1[0] = 0;
+      at.d2[0] = bend;
+      const Passed got = pass(cells.grid, even_limits(1, 1e9, 50, 1e9), 1e9);
+      const std::size_t where = is_end ? 21 : 20;
+      EXPECT_NEAR(got.b[where], 10, 1e-6) << "50 / 5";
+      EXPECT_NEAR(got.b[where - 2], 110, 1e-6);
+      EXPECT_NEAR(got.b[where + 2], is_end ? 110 : 110, 1e-6);
+    }
+  }
+}
+
 /// Joints that bend as they like: |½ q' b' + q'' b| at both ends of every cell.
 void draw(CellGrid& grid, unsigned seed) {
   std::mt19937 random(seed);

@@ -134,6 +134,78 @@ TEST(FreeTravel, FollowsAJointThatIsDriven) {
   EXPECT_NEAR(path.travel.end_of(path.spans[0], 1)[3], path.start[3] + 1.02, 1e-12);
 }
 
+TEST(FreeTravel, LetsAJointLeaveTheEndOfTravelSlowly) {
+  Followed path;
+  const double sense = path.joints_at(1, path.start)[3] > path.start[3] ? 1 : -1;
+  for (const double way : {sense, -sense}) {
+    for (std::size_t n = 0; n < path.spans.size(); ++n) {  // 2e-5 rad per span
+      const auto lean = [way](double u) {
+        return Lean{0.2 * std::cos(2e-5 * u), way * 0.2 * std::sin(2e-5 * u)};
+      };
+      const int number = static_cast<int>(n);
+      path.spans[n].band = leaning_span(number, lean(number), lean(number + 1));
+    }
+    // From one winding below zero, and one above.
+    for (const double turn : {-kTurn_rad, kTurn_rad}) {
+      const double begin = path.start[3] + turn;
+      const bool is_upwards = way == sense;
+      path.set_travel(is_upwards ? begin : -100, is_upwards ? 100 : begin);
+      EXPECT_EQ(path.follow(turn).first, -1);
+      path.set_travel(is_upwards ? -100 : begin, is_upwards ? begin : 100);
+      EXPECT_EQ(path.follow(turn).first, 0) << "the other way it leaves at once";
+    }
+  }
+}
+
+TEST(FreeTravel, LooksInsideOfASpanThatSwingsOutAndBack) {
+  Followed path;
+  JointSpan span;
+  span.band = leaning_span(0, {0.2, 0}, {0.2, 0});
+  span.band.length = 2;
+  span.band.c[4] = {0, 0.12, -0.06};  // y = 0.12 x - 0.06 x²: 0.06 in its middle
+  const JointVector begin = solve(path.model, 100, pose_on(span.band.c, 0.0), 0, {}).q;
+  const JointVector middle = solve(path.model, 100, pose_on(span.band.c, 1.0), 0, begin).q;
+  const double swing = middle[3] - begin[3];
+  ASSERT_GT(std::abs(swing), 0.25);
+  const auto fits_to = [&](double share) {
+    const double end = begin[3] + share * swing;
+    path.set_travel(swing > 0 ? -100 : end, swing > 0 ? end : 100);
+    path.travel.begin(begin, 100);
+    return !path.travel.follow(span);
+  };
+  EXPECT_FALSE(fits_to(0.9));
+  EXPECT_TRUE(fits_to(1.2));
+}
+
+TEST(FreeTravel, FollowsADrivenSpanOfAnyLength) {
+  Followed path;
+  JointSpan span;
+  span.band = leaning_span(0, {0.2, 0}, {0.2, 0.002});
+  span.band.length = 2.5;
+  span.is_free_driven = true;
+  for (std::size_t k = 0; k < 6; ++k) span.free[k] = path.start[3] + 0.1 * static_cast<double>(k);
+  path.travel.begin(path.start, 100);
+  EXPECT_NEAR(path.travel.end_of(span, 0)[3], path.start[3] + 0.5, 1e-12);
+}
+
+TEST(FreeTravel, SaysWhetherTheNextSpanFitsFromOtherJoints) {
+  Followed path;
+  const JointVector other = solve(path.model, 100, pose_on(path.spans[0].band.c, 0.0), 1, {}).q;
+  JointSpan span = path.spans[0];
+  span.branch = 1;
+  EXPECT_TRUE(path.travel.fits_from(other, span));
+  EXPECT_NEAR(path.travel.end_from(other, span)[3] - other[3],
+              path.travel.end_from(path.start, path.spans[0])[3] - path.start[3], 1e-3);
+  path.model.joints[1].limits.travel_max = -1e6;
+  EXPECT_FALSE(path.travel.fits_from(other, span)) << "a slide is outside";
+  path.model = bench_machine();
+  path.model.joints[3].is_endless = false;
+  const double end = path.travel.end_from(other, span)[3];
+  path.set_travel(end > other[3] ? -100 : 0.5 * (end + other[3]),
+                  end > other[3] ? 0.5 * (end + other[3]) : 100);
+  EXPECT_FALSE(path.travel.fits_from(other, span)) << "the redundant joint is";
+}
+
 TEST(FreeTravel, SeesATurnBesideThePole) {
   // Past the pole at 0.001 in one span: half a turn.
   Followed path;

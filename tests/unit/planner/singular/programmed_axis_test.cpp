@@ -121,6 +121,31 @@ TEST(ProgrammedAxis, FindsTheSharpestChangeOfDirectionOfEveryPart) {
       << "the last end is no kink: nothing is known behind it";
 }
 
+TEST(ProgrammedAxis, CountsPartsFromTheBeginOfTheRangeToItsEnd) {
+  ProgrammedAxis axis;
+  axis.begin(leaning(0));
+  // A kink at every end of a block, each sharper than the one before.
+  for (int n = 1; n <= 12; ++n) axis.add(10.0 * n, leaning((n % 2 == 0 ? 0.002 : -0.002) * n));
+  std::array<double, 2> two{};
+  ASSERT_EQ(axis.find_kinks(55, 105, two), 2U);
+  EXPECT_EQ(two[0], 70) << "the sharpest from 55 to 80";
+  EXPECT_EQ(two[1], 100);
+  ASSERT_EQ(axis.find_kinks(55, 100, two), 2U);
+  EXPECT_EQ(two[0], 70);
+  EXPECT_EQ(two[1], 90) << "what lies at its end is not between";
+}
+
+TEST(ProgrammedAxis, HasAKinkWhereTheDirectionChangesByMoreThanRounding) {
+  for (const double kink_per_mm : {0.8e-6, 1.5e-6}) {
+    ProgrammedAxis axis;
+    axis.begin(leaning(0));
+    axis.add(10, leaning(0));
+    axis.add(20, leaning(10 * kink_per_mm));
+    std::array<double, 4> kinks{};
+    EXPECT_EQ(axis.find_kinks(0, 20, kinks), kink_per_mm > 1e-6 ? 1U : 0U);
+  }
+}
+
 TEST(ProgrammedAxis, HasNoKinkWhereItTurnsEvenly) {
   ProgrammedAxis axis;
   axis.begin(leaning(0));
