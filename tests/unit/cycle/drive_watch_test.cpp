@@ -87,6 +87,32 @@ TEST(DriveWatch, ADriveThatMovesInOffIsAnAlarmWithTheWay) {
   }
 }
 
+TEST(DriveWatch, MotionIsMoreThanAHundredthOfAMillimetreInAWindow) {
+  for (const double velocity : {0.17, 0.23}) {  // 0.0085 and 0.0115 mm in 0.05 s
+    Idle idle;
+    idle.run(1);
+    idle.run(6 * kWatchWindow_s, 0, velocity);
+    EXPECT_EQ(idle.world.now(), velocity > 0.2 ? State::kFault : State::kOff) << velocity;
+  }
+}
+
+TEST(DriveWatch, AWindowFromBeforeTheMachineWasOnSaysNothing) {
+  Idle idle;
+  idle.run(1);
+  const auto move_one_window = [&] {
+    while (idle.world.state.watch.time > 0) idle.world.run();
+    idle.run(kWatchWindow_s, 0, 0.5);
+  };
+  move_one_window();
+  ASSERT_TRUE(idle.world.enable());
+  idle.world.command(Verb::kDisable);
+  ASSERT_TRUE(idle.world.run_until(State::kOff, 1));
+  idle.run(kOffGrace_s);
+  move_one_window();
+  idle.run(4 * kWatchWindow_s);
+  EXPECT_EQ(idle.alarms(), 0) << "two windows in a row, not two in all";
+}
+
 TEST(DriveWatch, IsAnAlarmOfItsOwnInFaultAndInDisabling) {
   for (const State state : {State::kFault, State::kDisabling}) {
     Idle idle(state);

@@ -34,6 +34,28 @@ TEST(Histogram, GivesPercentilesThatAreAtMostAThirtySecondTooLargeAndNeverTooSma
   EXPECT_EQ(histogram.max_ns(), values.back());
 }
 
+TEST(Histogram, EndsABucketWhereTheNextBegins) {
+  for (std::int64_t value = 1; value < 5000; ++value) {
+    Histogram histogram;
+    histogram.record(value);
+    histogram.record(1 << 20);
+    std::size_t index = 0;
+    while (histogram.bucket(index) == 0) ++index;
+    EXPECT_LE(value, Histogram::bucket_end_ns(index));
+    EXPECT_GT(value, index == 0 ? -1 : Histogram::bucket_end_ns(index - 1));
+  }
+  EXPECT_EQ(Histogram::bucket_end_ns(63), 63);
+  EXPECT_EQ(Histogram::bucket_end_ns(64), 65);
+  EXPECT_EQ(Histogram::bucket_end_ns(96), 131);
+}
+
+TEST(Histogram, AShareBeyondAllIsTheLargestAndOneBelowNoneTheSmallest) {
+  Histogram histogram;
+  for (int i = 1; i <= 10; ++i) histogram.record(i);
+  EXPECT_EQ(histogram.percentile_ns(3), 10);
+  EXPECT_EQ(histogram.percentile_ns(-1), 1);
+}
+
 TEST(Histogram, IsExactForSmallValues) {
   Histogram histogram;
   for (int i = 1; i <= 10; ++i) histogram.record(i);

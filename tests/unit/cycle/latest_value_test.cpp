@@ -36,6 +36,24 @@ TEST(LatestValue, ReportsEachValueOnceAndKeepsIt) {
   EXPECT_EQ(port.latest(), 3);
 }
 
+TEST(LatestValue, WhatIsReadStaysUntilTheNextRefreshWhateverIsStored) {
+  LatestValue<int> port(7);
+  const int& initial = port.latest();
+  for (int i = 1; i <= 3; ++i) {
+    port.store(i);
+    EXPECT_EQ(initial, 7);
+  }
+  for (int i = 10; i < 20; ++i) {
+    EXPECT_TRUE(port.refresh());
+    const int read = port.latest();
+    const int& kept = port.latest();
+    for (int k = 0; k < i % 4 + 1; ++k) {
+      port.store(i + 100 * k);
+      EXPECT_EQ(kept, read);
+    }
+  }
+}
+
 TEST(LatestValue, IsNeverTornNorOlderThanBeforeBetweenTwoThreads) {
   const auto port = std::make_unique<LatestValue<Item>>();
   const testing::Trial trial = testing::try_latest(*port, 20s, false);

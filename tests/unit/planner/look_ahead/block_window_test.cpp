@@ -93,6 +93,12 @@ TEST(BlockWindow, AnswersOnceOnlyOneWayGoesOn) {
   EXPECT_NE(ways[0].carries, ways[1].carries);
 }
 
+TEST(BlockWindow, NothingIsMissingWhereNothingWasAsked) {
+  Asked asked;
+  asked.push(0, 5);
+  EXPECT_FALSE(asked.window.is_missing());
+}
+
 TEST(BlockWindow, AnswersWhereNoBlockComesAnyMore) {
   Asked asked;
   asked.push(0, 5);
