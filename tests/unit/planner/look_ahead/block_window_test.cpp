@@ -91,6 +91,7 @@ TEST(BlockWindow, AnswersOnceOnlyOneWayGoesOn) {
   const auto ways = asked.window.ways();
   ASSERT_EQ(ways.size(), 2U);
   EXPECT_NE(ways[0].carries, ways[1].carries);
+  EXPECT_FALSE(asked.window.is_cut_short()) << "it is settled";
 }
 
 TEST(BlockWindow, NothingIsMissingWhereNothingWasAsked) {
@@ -107,6 +108,7 @@ TEST(BlockWindow, AnswersWhereNoBlockComesAnyMore) {
   asked.window.end();
   EXPECT_TRUE(asked.window.look());
   EXPECT_EQ(asked.window.ways()[0].carries, 4) << "those behind block 0";
+  EXPECT_FALSE(asked.window.is_cut_short()) << "the program is at its end";
 }
 
 TEST(BlockWindow, AnswersWhateverHasBeenPlannedMeanwhile) {
@@ -143,6 +145,7 @@ TEST(BlockWindow, LooksNoFartherThanItHasRoomFor) {
   asked.ask(0, false, 0);
   EXPECT_TRUE(asked.window.look());
   EXPECT_EQ(asked.window.ways()[0].carries, static_cast<int>(BlockWindow::kWaiting) - 1);
+  EXPECT_TRUE(asked.window.is_cut_short());
 }
 
 TEST(BlockWindow, ReportsALookThatWasCutShortAndAnswersItAgainTheSame) {
