@@ -23,7 +23,7 @@ static_assert(static_cast<int>(simulate::Cause::kPole) == 3 &&
 
 [[nodiscard]] ProgramPath::Cause seen(const simulate::ExplainedCycle& cycle) {
   return {.time_s = cycle.time_s,
-          .path_mm = cycle.way_mm,
+          .path_mm = cycle.distance_mm,
           .programmed_mm_per_s = cycle.programmed_mm_per_s,
           .limit = cycle.limit,
           .cause = cycle.cause ? static_cast<std::uint32_t>(*cycle.cause) : ProgramPath::kUndecided,

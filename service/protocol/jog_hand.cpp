@@ -15,7 +15,7 @@ constexpr double kSamePlace = 1e-6;          ///< mm or rad
 /// A machine says where it is twenty times a second; one that is silent for so long is gone.
 constexpr std::chrono::seconds kSilence{2};
 /// What the machine says so long after its reply is no older than that.
-constexpr std::chrono::milliseconds kOnItsWay{300};
+constexpr std::chrono::milliseconds kStartDelay{300};
 
 [[nodiscard]] JointVector joints_of(const OperatorLink& link) {
   return link.status() ? link.status()->joints : JointVector{};
@@ -84,7 +84,7 @@ JogHand::Grip JogHand::press(const JogPlan& plan, const dds::Reply& reply,
     }
     heard = now;
     const bool is_jogging = link_.status()->state == State::kJogging;
-    has_begun = has_begun || is_jogging || now - begin > kOnItsWay;
+    has_begun = has_begun || is_jogging || now - begin > kStartDelay;
     if (has_begun && !is_jogging) return Grip::kTakenOff;
     if (joints_of(link_) != seen) moved = now;
     seen = joints_of(link_);

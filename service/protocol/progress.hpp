@@ -19,7 +19,7 @@ struct ProgressView {
   std::uint32_t line = 0;
   double feed_programmed_mm_per_min = 0, feed_achieved_mm_per_min = 0;
   bool is_rapid = false;            ///< no feed is programmed for the motion
-  bool is_under_way = false;        ///< from the approach to the last block, stops on the way too
+  bool is_active = false;           ///< from the approach to the last block, stops on the way too
   double fraction = 0;              ///< of the program's ideal time, 0 to 1
   std::optional<double> to_go_s{};  ///< once enough has run for an estimate
 };
@@ -47,7 +47,7 @@ class ProgressMeter {
     view.is_rapid =
         status.motion == MotionKind::kRapid ||
         (status.motion == MotionKind::kApproach && !(status.feed_programmed_mm_per_min > 0));
-    view.is_under_way = is_under_way(status.state);
+    view.is_active = is_active(status.state);
     if (times_.total_s() > 0) view.fraction = done_s / times_.total_s();
     constexpr double kEnough = 0.005;
     if (view.fraction > kEnough && run_s_ > 0) {
@@ -61,7 +61,7 @@ class ProgressMeter {
     return state == State::kRunning || state == State::kStarving || state == State::kHolding;
   }
 
-  [[nodiscard]] static bool is_under_way(State state) noexcept {
+  [[nodiscard]] static bool is_active(State state) noexcept {
     return state == State::kApproaching || is_running(state) || state == State::kHeld ||
            state == State::kStarved || state == State::kStepping || state == State::kAborting;
   }

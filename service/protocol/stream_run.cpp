@@ -169,7 +169,7 @@ class StreamRun {
     const bool is_ours = status->session == request_.session;
     if (is_ours) {
       const ProgressView view = meter_.look(*status, now_ns);
-      if (view.is_under_way) listener_.show(view);
+      if (view.is_active) listener_.show(view);
     }
     if (is_ours || station_.state() != StationState::kOpening) news_.status(*status);
     return true;

@@ -5,26 +5,26 @@
 namespace meridian::dds {
 namespace {
 
-template <class Way, class Message, class Wire>
-void setpoint_sample_fields(Way way, Message& message, Wire& wire) {
-  way(message.setpoint.cycle, wire.cycle);
-  way(message.setpoint.due_ns, wire.due_ns);
-  way(message.setpoint.position, wire.position);
-  way(message.setpoint.velocity, wire.velocity);
-  way(message.setpoint.line, wire.line);
-  way(message.setpoint.epoch, wire.epoch);
-  way(message.setpoint.flags, wire.flags);
-  way(message.crc, wire.crc32c);
+template <class Convert, class Message, class Wire>
+void setpoint_sample_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.setpoint.cycle, wire.cycle);
+  convert(message.setpoint.due_ns, wire.due_ns);
+  convert(message.setpoint.position, wire.position);
+  convert(message.setpoint.velocity, wire.velocity);
+  convert(message.setpoint.line, wire.line);
+  convert(message.setpoint.epoch, wire.epoch);
+  convert(message.setpoint.flags, wire.flags);
+  convert(message.crc, wire.crc32c);
 }
 
-template <class Way, class Message, class Wire>
-void drive_command_fields(Way way, Message& message, Wire& wire) {
-  way(message.drive, wire.drive);
-  way(message.controlword, wire.controlword);
-  way(message.mode, wire.mode);
-  way(message.epoch, wire.epoch);
-  way(message.service_id, wire.service_id);
-  way(message.sample, wire.sample);
+template <class Convert, class Message, class Wire>
+void drive_command_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.drive, wire.drive);
+  convert(message.controlword, wire.controlword);
+  convert(message.mode, wire.mode);
+  convert(message.epoch, wire.epoch);
+  convert(message.service_id, wire.service_id);
+  convert(message.sample, wire.sample);
 }
 
 /// Two inputs share an octet: a guard is bit 1, the stop input any other.
@@ -41,39 +41,39 @@ void input_bits(FromWire /*way*/, Message& message, const Wire& wire) {
   message.is_guard_open = (wire.is_emergency_stop & kGuardBit) != 0;
 }
 
-template <class Way, class Message, class Wire>
-void drive_feedback_fields(Way way, Message& message, Wire& wire) {
-  way(message.drive_group, wire.drive_group);
-  way(message.joint_mask, wire.joint_mask);
-  way(message.sample, wire.sample);
-  way(message.cycle_seen, wire.cycle_seen);
-  way(message.service_id, wire.service_id);
-  way(message.position, wire.position);
-  way(message.statusword, wire.statusword);
-  way(message.error, wire.error);
-  way(message.referenced_mask, wire.referenced_mask);
-  input_bits(way, message, wire);
-  way(message.probe, wire.probe);
-  way(message.mode_display, wire.mode_display);
+template <class Convert, class Message, class Wire>
+void drive_feedback_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.drive_group, wire.drive_group);
+  convert(message.joint_mask, wire.joint_mask);
+  convert(message.sample, wire.sample);
+  convert(message.cycle_seen, wire.cycle_seen);
+  convert(message.service_id, wire.service_id);
+  convert(message.position, wire.position);
+  convert(message.statusword, wire.statusword);
+  convert(message.error, wire.error);
+  convert(message.referenced_mask, wire.referenced_mask);
+  input_bits(convert, message, wire);
+  convert(message.probe, wire.probe);
+  convert(message.mode_display, wire.mode_display);
 }
 
-template <class Way, class Message, class Wire>
-void action_fields(Way way, Message& message, Wire& wire) {
-  way(message.id, wire.id);
-  way(message.service_id, wire.service_id);
-  way(message.sequence, wire.block);
-  way(message.line, wire.line);
-  way(message.kind, wire.kind);
-  way(message.value, wire.value);
-  way(message.text, wire.text);
+template <class Convert, class Message, class Wire>
+void action_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.id, wire.id);
+  convert(message.service_id, wire.service_id);
+  convert(message.sequence, wire.block);
+  convert(message.line, wire.line);
+  convert(message.kind, wire.kind);
+  convert(message.value, wire.value);
+  convert(message.text, wire.text);
 }
 
-template <class Way, class Message, class Wire>
-void action_done_fields(Way way, Message& message, Wire& wire) {
-  way(message.id, wire.id);
-  way(message.service_id, wire.service_id);
-  way(message.is_done, wire.is_done);
-  way(message.text, wire.text);
+template <class Convert, class Message, class Wire>
+void action_done_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.id, wire.id);
+  convert(message.service_id, wire.service_id);
+  convert(message.is_done, wire.is_done);
+  convert(message.text, wire.text);
 }
 
 }  // namespace

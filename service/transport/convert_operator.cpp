@@ -5,68 +5,68 @@
 namespace meridian::dds {
 namespace {
 
-template <class Way, class Message, class Wire>
-void command_request_fields(Way way, Message& message, Wire& wire) {
-  way(message.request, wire.request);
-  way(message.operator_id, wire.operator_id);
-  way(message.operator_name, wire.operator_name);
-  way(message.verb, wire.verb);
-  way(message.epoch_seen, wire.epoch_seen);
-  way(message.status_seen, wire.status_seen);
-  way(message.service_id_seen, wire.service_id_seen);
-  way(message.argument, wire.argument);
-  way(message.frame.word, wire.frame_word);
-  way(message.frame.frame.number, wire.frame_number);
-  way.name(message.frame.frame.name, wire.frame_name);
-  way(message.frame.frame.origin_mm, wire.frame_origin_mm);
-  way(message.frame.frame.rotation_deg, wire.frame_rotation_deg);
-  way(message.tools_seen, wire.tools_seen);
-  way.whole(message.tool_file, wire.tool_file);
-  way(message.limits.word, wire.limits_word);
-  way(message.limits.joint, wire.limits_joint);
-  way(message.limits.min, wire.limits_min);
-  way(message.limits.max, wire.limits_max);
-  way.name(message.limits.box.name, wire.limits_box_name);
-  way(message.limits.box.joints, wire.limits_box_joints);
-  way(message.limits.box.min, wire.limits_box_min);
-  way(message.limits.box.max, wire.limits_box_max);
+template <class Convert, class Message, class Wire>
+void command_request_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.request, wire.request);
+  convert(message.operator_id, wire.operator_id);
+  convert(message.operator_name, wire.operator_name);
+  convert(message.verb, wire.verb);
+  convert(message.epoch_seen, wire.epoch_seen);
+  convert(message.status_seen, wire.status_seen);
+  convert(message.service_id_seen, wire.service_id_seen);
+  convert(message.argument, wire.argument);
+  convert(message.frame.word, wire.frame_word);
+  convert(message.frame.frame.number, wire.frame_number);
+  convert.name(message.frame.frame.name, wire.frame_name);
+  convert(message.frame.frame.origin_mm, wire.frame_origin_mm);
+  convert(message.frame.frame.rotation_deg, wire.frame_rotation_deg);
+  convert(message.tools_seen, wire.tools_seen);
+  convert.whole(message.tool_file, wire.tool_file);
+  convert(message.limits.word, wire.limits_word);
+  convert(message.limits.joint, wire.limits_joint);
+  convert(message.limits.min, wire.limits_min);
+  convert(message.limits.max, wire.limits_max);
+  convert.name(message.limits.box.name, wire.limits_box_name);
+  convert(message.limits.box.joints, wire.limits_box_joints);
+  convert(message.limits.box.min, wire.limits_box_min);
+  convert(message.limits.box.max, wire.limits_box_max);
 }
 
-template <class Way, class Message, class Wire>
-void reply_fields(Way way, Message& message, Wire& wire) {
-  way(message.request, wire.request);
-  way(message.operator_id, wire.operator_id);
-  way(message.service_id, wire.service_id);
-  way(message.requester, wire.requester);
-  way(message.verb, wire.verb);
-  way(message.is_accepted, wire.is_accepted);
-  way(message.refusal, wire.refusal);
-  way(message.state, wire.state);
-  way(message.epoch, wire.epoch);
-  way(message.text, wire.text);
+template <class Convert, class Message, class Wire>
+void reply_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.request, wire.request);
+  convert(message.operator_id, wire.operator_id);
+  convert(message.service_id, wire.service_id);
+  convert(message.requester, wire.requester);
+  convert(message.verb, wire.verb);
+  convert(message.is_accepted, wire.is_accepted);
+  convert(message.refusal, wire.refusal);
+  convert(message.state, wire.state);
+  convert(message.epoch, wire.epoch);
+  convert(message.text, wire.text);
 }
 
-template <class Way, class Message, class Wire>
-void jog_fields(Way way, Message& message, Wire& wire) {
-  way(message.operator_id, wire.operator_id);
-  way(message.sample, wire.sample);
-  way(message.status_seen, wire.status_seen);
-  way(message.service_id_seen, wire.service_id_seen);
-  way(message.epoch_seen, wire.epoch_seen);
-  way(message.frame, wire.frame);
-  way(message.joint, wire.joint);
-  way(message.velocity, wire.velocity);
-  way(message.distance, wire.distance);
-  way(message.dead_man_ns, wire.dead_man_ns);
+template <class Convert, class Message, class Wire>
+void jog_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.operator_id, wire.operator_id);
+  convert(message.sample, wire.sample);
+  convert(message.status_seen, wire.status_seen);
+  convert(message.service_id_seen, wire.service_id_seen);
+  convert(message.epoch_seen, wire.epoch_seen);
+  convert(message.frame, wire.frame);
+  convert(message.joint, wire.joint);
+  convert(message.velocity, wire.velocity);
+  convert(message.distance, wire.distance);
+  convert(message.dead_man_ns, wire.dead_man_ns);
 }
 
-template <class Way, class Message, class Wire>
-void enabling_fields(Way way, Message& message, Wire& wire) {
-  way(message.operator_id, wire.operator_id);
-  way(message.sample, wire.sample);
-  way(message.operator_name, wire.operator_name);
-  way(message.device, wire.device);
-  way(message.service_id_seen, wire.service_id_seen);
+template <class Convert, class Message, class Wire>
+void enabling_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.operator_id, wire.operator_id);
+  convert(message.sample, wire.sample);
+  convert(message.operator_name, wire.operator_name);
+  convert(message.device, wire.device);
+  convert(message.service_id_seen, wire.service_id_seen);
 }
 
 }  // namespace

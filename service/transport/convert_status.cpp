@@ -14,150 +14,150 @@ static_assert(kMaxHistograms == meridian_wire_kHistograms);
 constexpr WorkFrame kNoFrame{};
 static_assert(WorkFrames::kMax == meridian_wire_kWorkFrames);
 
-template <class Way, class Message, class Wire>
-void status_fields(Way way, Message& message, Wire& wire) {
-  way(message.service_id, wire.service_id);
-  way(message.status_sequence, wire.status_sequence);
-  way(message.time_ns, wire.time_ns);
-  way(message.cycle, wire.cycle);
-  way(message.state, wire.state);
-  way(message.realtime_mode, wire.realtime_mode);
-  way(message.is_secured, wire.is_secured);
-  way(message.is_open_network, wire.is_open_network);
-  way(message.is_enabling_required, wire.is_enabling_required);
-  way(message.enabling_devices, wire.enabling_devices);
-  way(message.is_auxiliary_ignored, wire.is_auxiliary_ignored);
-  way(message.alarm, wire.alarm);
-  way(message.alarm_joint, wire.alarm_joint);
-  way(message.epoch, wire.epoch);
-  way(message.alarm_line, wire.alarm_line);
-  way(message.alarm_value, wire.alarm_value);
-  way(message.session, wire.session);
-  way(message.station, wire.station);
-  way(message.program, wire.program);
-  way(message.block_count, wire.block_count);
-  way(message.block, wire.block);
-  way(message.line, wire.line);
-  way(message.motion, wire.motion);
-  way(message.branch, wire.branch);
-  way(message.is_at_pole, wire.is_at_pole);
-  way(message.limiting_joint, wire.limiting_joint);
-  way(message.feed_programmed_mm_per_min, wire.feed_programmed_mm_per_min);
-  way(message.feed_achieved_mm_per_min, wire.feed_achieved_mm_per_min);
-  way(message.feed_override, wire.feed_override);
-  way(message.rapid_override, wire.rapid_override);
-  way(message.is_single_block, wire.is_single_block);
-  way(message.stops_at_optional, wire.stops_at_optional);
-  way(message.is_dry_run, wire.is_dry_run);
-  way(message.work_frame, wire.work_frame);
-  way(message.frame, wire.frame);
-  way(message.tools, wire.tools);
-  way(message.limits, wire.limits);
-  way(message.tool, wire.tool);
-  way(message.tool_length_mm, wire.tool_length_mm);
-  way(message.rate, wire.rate);
-  way(message.plan_time_s, wire.plan_time_s);
-  way(message.joints, wire.joints);
-  way(message.drives_enabled_mask, wire.drives_enabled_mask);
-  way(message.drives_fault_mask, wire.drives_fault_mask);
-  way(message.probe, wire.probe);
-  way(message.is_guard_open, wire.is_guard_open);
-  way(message.stops, wire.stops);
-  way(message.contacts, wire.contacts);
-  way(message.contact_periods, wire.contact_periods);
-  way(message.contact_joints, wire.contact_joints);
-  way(message.contact_free_joints, wire.contact_free_joints);
-  way(message.blocks_received, wire.blocks_received);
-  way(message.blocks_done, wire.blocks_done);
-  way(message.blocks_queued, wire.blocks_queued);
-  way(message.pieces_queued, wire.pieces_queued);
-  way(message.planned_s, wire.planned_s);
-  way(message.stop_time_s, wire.stop_time_s);
-  way(message.stop_distance_mm, wire.stop_distance_mm);
-  way(message.cycles_run, wire.cycles_run);
-  way(message.periods_lost, wire.periods_lost);
-  way(message.starvations, wire.starvations);
-  way(message.batches_dropped, wire.batches_dropped);
-  way(message.batches_lost, wire.batches_lost);
-  way(message.setpoints_overrun, wire.setpoints_overrun);
-  way(message.records_overrun, wire.records_overrun);
-  way(message.events_overrun, wire.events_overrun);
-  way(message.commands_dropped, wire.commands_dropped);
-  way(message.replies_dropped, wire.replies_dropped);
-  way(message.stalled_reader, wire.stalled_reader);
-  way(message.message, wire.message);
+template <class Convert, class Message, class Wire>
+void status_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.service_id, wire.service_id);
+  convert(message.status_sequence, wire.status_sequence);
+  convert(message.time_ns, wire.time_ns);
+  convert(message.cycle, wire.cycle);
+  convert(message.state, wire.state);
+  convert(message.realtime_mode, wire.realtime_mode);
+  convert(message.is_secured, wire.is_secured);
+  convert(message.is_open_network, wire.is_open_network);
+  convert(message.is_enabling_required, wire.is_enabling_required);
+  convert(message.enabling_devices, wire.enabling_devices);
+  convert(message.is_auxiliary_ignored, wire.is_auxiliary_ignored);
+  convert(message.alarm, wire.alarm);
+  convert(message.alarm_joint, wire.alarm_joint);
+  convert(message.epoch, wire.epoch);
+  convert(message.alarm_line, wire.alarm_line);
+  convert(message.alarm_value, wire.alarm_value);
+  convert(message.session, wire.session);
+  convert(message.station, wire.station);
+  convert(message.program, wire.program);
+  convert(message.block_count, wire.block_count);
+  convert(message.block, wire.block);
+  convert(message.line, wire.line);
+  convert(message.motion, wire.motion);
+  convert(message.branch, wire.branch);
+  convert(message.is_at_pole, wire.is_at_pole);
+  convert(message.limiting_joint, wire.limiting_joint);
+  convert(message.feed_programmed_mm_per_min, wire.feed_programmed_mm_per_min);
+  convert(message.feed_achieved_mm_per_min, wire.feed_achieved_mm_per_min);
+  convert(message.feed_override, wire.feed_override);
+  convert(message.rapid_override, wire.rapid_override);
+  convert(message.is_single_block, wire.is_single_block);
+  convert(message.stops_at_optional, wire.stops_at_optional);
+  convert(message.is_dry_run, wire.is_dry_run);
+  convert(message.work_frame, wire.work_frame);
+  convert(message.frame, wire.frame);
+  convert(message.tools, wire.tools);
+  convert(message.limits, wire.limits);
+  convert(message.tool, wire.tool);
+  convert(message.tool_length_mm, wire.tool_length_mm);
+  convert(message.rate, wire.rate);
+  convert(message.plan_time_s, wire.plan_time_s);
+  convert(message.joints, wire.joints);
+  convert(message.drives_enabled_mask, wire.drives_enabled_mask);
+  convert(message.drives_fault_mask, wire.drives_fault_mask);
+  convert(message.probe, wire.probe);
+  convert(message.is_guard_open, wire.is_guard_open);
+  convert(message.stops, wire.stops);
+  convert(message.contacts, wire.contacts);
+  convert(message.contact_periods, wire.contact_periods);
+  convert(message.contact_joints, wire.contact_joints);
+  convert(message.contact_free_joints, wire.contact_free_joints);
+  convert(message.blocks_received, wire.blocks_received);
+  convert(message.blocks_done, wire.blocks_done);
+  convert(message.blocks_queued, wire.blocks_queued);
+  convert(message.pieces_queued, wire.pieces_queued);
+  convert(message.planned_s, wire.planned_s);
+  convert(message.stop_time_s, wire.stop_time_s);
+  convert(message.stop_distance_mm, wire.stop_distance_mm);
+  convert(message.cycles_run, wire.cycles_run);
+  convert(message.periods_lost, wire.periods_lost);
+  convert(message.starvations, wire.starvations);
+  convert(message.batches_dropped, wire.batches_dropped);
+  convert(message.batches_lost, wire.batches_lost);
+  convert(message.setpoints_overrun, wire.setpoints_overrun);
+  convert(message.records_overrun, wire.records_overrun);
+  convert(message.events_overrun, wire.events_overrun);
+  convert(message.commands_dropped, wire.commands_dropped);
+  convert(message.replies_dropped, wire.replies_dropped);
+  convert(message.stalled_reader, wire.stalled_reader);
+  convert(message.message, wire.message);
 }
 
-template <class Way, class Message, class Wire>
-void joint_info_fields(Way way, Message& message, Wire& wire) {
-  way(message.name, wire.name);
-  way(message.is_rotary, wire.is_rotary);
-  way(message.is_endless, wire.is_endless);
-  way(message.drive, wire.drive);
-  way(message.limits.travel_min, wire.travel_min);
-  way(message.limits.travel_max, wire.travel_max);
-  way(message.limits.velocity, wire.velocity);
-  way(message.limits.acceleration, wire.acceleration);
-  way(message.limits.jerk, wire.jerk);
-  way(message.limits.fault_acceleration, wire.fault_acceleration);
-  way(message.limits.fault_jerk, wire.fault_jerk);
-  way(message.limits.following_error, wire.following_error);
-  way(message.home, wire.home);
+template <class Convert, class Message, class Wire>
+void joint_info_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.name, wire.name);
+  convert(message.is_rotary, wire.is_rotary);
+  convert(message.is_endless, wire.is_endless);
+  convert(message.drive, wire.drive);
+  convert(message.limits.travel_min, wire.travel_min);
+  convert(message.limits.travel_max, wire.travel_max);
+  convert(message.limits.velocity, wire.velocity);
+  convert(message.limits.acceleration, wire.acceleration);
+  convert(message.limits.jerk, wire.jerk);
+  convert(message.limits.fault_acceleration, wire.fault_acceleration);
+  convert(message.limits.fault_jerk, wire.fault_jerk);
+  convert(message.limits.following_error, wire.following_error);
+  convert(message.home, wire.home);
 }
 
-template <class Way, class Message, class Wire>
-void work_frame_fields(Way way, Message& message, Wire& wire) {
-  way(message.number, wire.number);
-  way.name(message.name, wire.name);
-  way(message.origin_mm, wire.origin_mm);
-  way(message.rotation_deg, wire.rotation_deg);
+template <class Convert, class Message, class Wire>
+void work_frame_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.number, wire.number);
+  convert.name(message.name, wire.name);
+  convert(message.origin_mm, wire.origin_mm);
+  convert(message.rotation_deg, wire.rotation_deg);
 }
 
-template <class Way, class Message, class Wire>
-void machine_info_fields(Way way, Message& message, Wire& wire) {
-  way(message.service_id, wire.service_id);
-  way(message.served_ns, wire.served_ns);
-  way(message.name, wire.name);
-  way(message.file_version, wire.file_version);
-  way(message.service_version, wire.service_version);
-  way(message.host, wire.host);
-  way(message.pid, wire.pid);
-  way(message.is_serving, wire.is_serving);
-  way(message.kinematics, wire.kinematics);
-  way(message.clock, wire.clock);
-  way(message.cycle_ns, wire.cycle_ns);
-  way(message.bridge_cycles, wire.bridge_cycles);
-  way(message.joint_count, wire.joint_count);
+template <class Convert, class Message, class Wire>
+void machine_info_fields(Convert convert, Message& message, Wire& wire) {
+  convert(message.service_id, wire.service_id);
+  convert(message.served_ns, wire.served_ns);
+  convert(message.name, wire.name);
+  convert(message.file_version, wire.file_version);
+  convert(message.service_version, wire.service_version);
+  convert(message.host, wire.host);
+  convert(message.pid, wire.pid);
+  convert(message.is_serving, wire.is_serving);
+  convert(message.kinematics, wire.kinematics);
+  convert(message.clock, wire.clock);
+  convert(message.cycle_ns, wire.cycle_ns);
+  convert(message.bridge_cycles, wire.bridge_cycles);
+  convert(message.joint_count, wire.joint_count);
   for (std::size_t i = 0; i < kMaxJoints; ++i)
-    joint_info_fields(way, message.joints[i], wire.joints[i]);
-  way(message.stage_drive_count, wire.stage_drive_count);
+    joint_info_fields(convert, message.joints[i], wire.joints[i]);
+  convert(message.stage_drive_count, wire.stage_drive_count);
   for (std::size_t i = 0; i < kStageDrives; ++i) {
-    joint_info_fields(way, message.stage_drives[i], wire.stage_drives[i]);
+    joint_info_fields(convert, message.stage_drives[i], wire.stage_drives[i]);
   }
-  way(message.max_feed_mm_per_min, wire.max_feed_mm_per_min);
-  way(message.tip_tolerance_mm, wire.tip_tolerance_mm);
-  way(message.axis_tolerance_rad, wire.axis_tolerance_rad);
-  way(message.tool_length_mm, wire.tool_length_mm);
-  way(message.frame_rotation, wire.frame_rotation);
-  way(message.frame_origin_mm, wire.frame_origin_mm);
-  way(message.work_frame, wire.work_frame);
-  way.whole(message.machine_file, wire.machine_file);
-  way.whole(message.tool_file, wire.tool_file);
+  convert(message.max_feed_mm_per_min, wire.max_feed_mm_per_min);
+  convert(message.tip_tolerance_mm, wire.tip_tolerance_mm);
+  convert(message.axis_tolerance_rad, wire.axis_tolerance_rad);
+  convert(message.tool_length_mm, wire.tool_length_mm);
+  convert(message.frame_rotation, wire.frame_rotation);
+  convert(message.frame_origin_mm, wire.frame_origin_mm);
+  convert(message.work_frame, wire.work_frame);
+  convert.whole(message.machine_file, wire.machine_file);
+  convert.whole(message.tool_file, wire.tool_file);
 }
 
-template <class Way, class Box, class Wire>
-void keep_out_box_fields(Way way, Box& box, Wire& wire) {
-  way.name(box.name, wire.name);
-  way(box.joints, wire.joints);
-  way(box.min, wire.min);
-  way(box.max, wire.max);
+template <class Convert, class Box, class Wire>
+void keep_out_box_fields(Convert convert, Box& box, Wire& wire) {
+  convert.name(box.name, wire.name);
+  convert(box.joints, wire.joints);
+  convert(box.min, wire.min);
+  convert(box.max, wire.max);
 }
 
-template <class Way, class Box, class Wire>
-void tip_box_fields(Way way, Box& box, Wire& wire) {
-  way(box.is_set, wire.has_tip_box);
-  way(box.min, wire.tip_box_min_mm);
-  way(box.max, wire.tip_box_max_mm);
+template <class Convert, class Box, class Wire>
+void tip_box_fields(Convert convert, Box& box, Wire& wire) {
+  convert(box.is_set, wire.has_tip_box);
+  convert(box.min, wire.tip_box_min_mm);
+  convert(box.max, wire.tip_box_max_mm);
 }
 
 void soft_limits_to_wire(const SoftLimits& limits, meridian_wire_Machine& wire) noexcept {

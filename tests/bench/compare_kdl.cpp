@@ -62,8 +62,8 @@ KDL::JntArray kdl_joints(const Skeleton& s, const JointVector& q) {
   KDL::JntArray out(static_cast<unsigned>(s.joints.size()));
   for (unsigned i = 0; i < s.joints.size(); ++i) {
     const auto at = static_cast<std::size_t>(s.joints[i].joint);
-    const double way = q[at] - s.joints_there[at];
-    out(i) = s.joints[i].is_rotary ? way : way / kMetre_mm;
+    const double distance = q[at] - s.joints_there[at];
+    out(i) = s.joints[i].is_rotary ? distance : distance / kMetre_mm;
   }
   return out;
 }
@@ -143,10 +143,10 @@ std::vector<Case> cases_of(const MachineModel& model, const Skeleton& s, const K
     for (int branch = 0; branch < branch_count(model); ++branch) {
       const auto solution = solve(model, model.tool_length_mm, c.pose, branch, q);
       if (solution.status == SolveStatus::kUnreachable) continue;
-      double way = 0;
-      for (std::size_t i = 0; i < q.size(); ++i) way += std::abs(solution.q[i] - q[i]);
-      if (way < nearest) c.branch = branch;
-      nearest = std::min(nearest, way);
+      double distance = 0;
+      for (std::size_t i = 0; i < q.size(); ++i) distance += std::abs(solution.q[i] - q[i]);
+      if (distance < nearest) c.branch = branch;
+      nearest = std::min(nearest, distance);
     }
     out.push_back(std::move(c));
   }

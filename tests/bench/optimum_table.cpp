@@ -20,7 +20,7 @@ std::vector<ClBlock> draw_program(std::uint64_t seed) {
   const int count = static_cast<int>(draw.uniform(10, 100));
   const double feed = draw.log_uniform(10, 250), step = draw.log_uniform(0.1, 5);
   const double corner = draw.chance(0.5) ? 0.15 : 0;
-  Vector3 tip(draw.uniform(-40, 40), draw.uniform(-40, 40), 20), way(1, 0, 0);
+  Vector3 tip(draw.uniform(-40, 40), draw.uniform(-40, 40), 20), direction(1, 0, 0);
   double tilt = draw.uniform(0.1, 0.5), azimuth = draw.uniform(-3, 3), bend = 0;
   const double swing = draw.log_uniform(1e-4, 2e-2);
   std::vector<ClBlock> blocks;
@@ -30,9 +30,9 @@ std::vector<ClBlock> draw_program(std::uint64_t seed) {
     blocks.push_back(block);
     bend = 0.8 * bend + draw.uniform(-0.06, 0.06);
     const double turn = draw.chance(corner) ? draw.uniform(-2, 2) : bend;
-    way = Eigen::AngleAxisd(turn, Vector3::UnitZ()) * way;
-    way.z() = 0.3 * std::sin(0.2 * n);
-    tip += step * way.normalized();
+    direction = Eigen::AngleAxisd(turn, Vector3::UnitZ()) * direction;
+    direction.z() = 0.3 * std::sin(0.2 * n);
+    tip += step * direction.normalized();
     tilt = std::clamp(tilt + swing * std::sin(0.15 * n), 0.05, 0.8);
     azimuth += swing * std::cos(0.1 * n);
   }
@@ -69,7 +69,7 @@ std::vector<ClBlock> draw_corners(std::uint64_t seed) {
   const int count = static_cast<int>(draw.uniform(5, 40));
   const double feed = draw.log_uniform(5, 300), size = draw.log_uniform(0.05, 10);
   const double swing = draw.chance(0.5) ? draw.log_uniform(1e-3, 0.2) : 0;
-  Vector3 tip(draw.uniform(-40, 40), draw.uniform(-40, 40), 20), way(1, 0, 0);
+  Vector3 tip(draw.uniform(-40, 40), draw.uniform(-40, 40), 20), direction(1, 0, 0);
   double tilt = draw.uniform(0.15, 0.5), azimuth = draw.uniform(-3, 3);
   std::vector<ClBlock> blocks;
   for (int n = 0; n <= count; ++n) {
@@ -77,8 +77,9 @@ std::vector<ClBlock> draw_corners(std::uint64_t seed) {
     block.feed = feed;
     blocks.push_back(block);
     const double turn = draw.uniform(1.05, 3.14) * (draw.chance(0.5) ? 1 : -1);
-    way = Eigen::AngleAxisd(turn, Vector3(0.3 * std::sin(1.0 * n), 0, 1).normalized()) * way;
-    tip += size * draw.log_uniform(0.3, 2) * way;
+    direction =
+        Eigen::AngleAxisd(turn, Vector3(0.3 * std::sin(1.0 * n), 0, 1).normalized()) * direction;
+    tip += size * draw.log_uniform(0.3, 2) * direction;
     tilt = std::clamp(tilt + swing * draw.uniform(-1, 1), 0.1, 0.8);
     azimuth += swing * draw.uniform(-1, 1);
   }

@@ -147,10 +147,10 @@ TEST_F(SetUpMove, ThatIsInterruptedRestsOnItsWayAndFreesTheMachine) {
   slow.send_signal(SIGINT);
   EXPECT_EQ(slow.wait(milliseconds(20'000)), 1) << slow.said();
   ASSERT_NO_FATAL_FAILURE(expect_free());
-  const Vector3 way = pose().tip - tip;
-  EXPECT_GT(way.z(), 0);
-  EXPECT_LT(way.z(), 25);
-  EXPECT_LT(way.head<2>().norm(), kThere_mm) << "straight";
+  const Vector3 moved = pose().tip - tip;
+  EXPECT_GT(moved.z(), 0);
+  EXPECT_LT(moved.z(), 25);
+  EXPECT_LT(moved.head<2>().norm(), kThere_mm) << "straight";
 }
 
 }  // namespace

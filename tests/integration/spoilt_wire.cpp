@@ -60,8 +60,8 @@ class SpoiltWire {
     ends_.push_back({STDIN_FILENO, POLLIN, 0});
     while (has_input_) {
       timespec wait{1, 0};
-      if (!under_way_.empty()) {
-        const auto left = std::max(Clock::duration{}, under_way_.top().due - Clock::now());
+      if (!in_flight_.empty()) {
+        const auto left = std::max(Clock::duration{}, in_flight_.top().due - Clock::now());
         wait = {left / std::chrono::seconds(1),
                 std::chrono::nanoseconds(left % std::chrono::seconds(1)).count()};
       }
@@ -93,7 +93,7 @@ class SpoiltWire {
                                  reinterpret_cast<sockaddr*>(&address), &size);
     if (n < ETH_HLEN || address.sll_pkttype == PACKET_OUTGOING) return;
     Frame frame{Clock::now(), ++order_, from, {bytes.begin(), bytes.begin() + n}};
-    if (address.sll_protocol != htons(ETH_P_IP)) return under_way_.push(frame);
+    if (address.sll_protocol != htons(ETH_P_IP)) return in_flight_.push(frame);
     ++frames_;
     if (comes_to_pass(lost_share_, lost_)) return;
     if (comes_to_pass(wrong_share_, wrong_)) {
@@ -104,8 +104,8 @@ class SpoiltWire {
     const auto arrived = frame.due;
     if (!comes_to_pass(past_share_, past_others_)) frame.due += late();
     late_ += frame.due - arrived >= kLate ? 1 : 0;
-    if (comes_to_pass(twice_share_, twice_)) under_way_.push(frame);
-    under_way_.push(frame);
+    if (comes_to_pass(twice_share_, twice_)) in_flight_.push(frame);
+    in_flight_.push(frame);
   }
 
   [[nodiscard]] bool comes_to_pass(double share, int& count) {
@@ -120,19 +120,19 @@ class SpoiltWire {
   }
 
   void deliver() {
-    for (const auto now = Clock::now(); !under_way_.empty() && under_way_.top().due <= now;) {
-      const Frame& frame = under_way_.top();
+    for (const auto now = Clock::now(); !in_flight_.empty() && in_flight_.top().due <= now;) {
+      const Frame& frame = in_flight_.top();
       for (std::size_t i = 0; i + 1 < ends_.size(); ++i) {
         if (i != frame.from) {
           (void)::send(ends_[i].fd, frame.bytes.data(), frame.bytes.size(), MSG_DONTWAIT);
         }
       }
-      under_way_.pop();
+      in_flight_.pop();
     }
   }
 
   std::vector<pollfd> ends_;
-  std::priority_queue<Frame> under_way_;
+  std::priority_queue<Frame> in_flight_;
   std::mt19937 engine_{1};
   std::uint64_t order_ = 0;
   bool has_input_ = true;

@@ -148,17 +148,20 @@ TEST_P(StationDeathInAnArc, AndAnAbortAreMadeUpForFromTheBeginOfTheArc) {
 }
 
 /// Both ways of going from block to block where MERIDIAN_FAULT_MATRIX=all is in the environment.
-[[nodiscard]] std::vector<const char*> ways(const char* otherwise) {
+[[nodiscard]] std::vector<const char*> transitions(const char* otherwise) {
   if (is_whole_matrix()) return {"smooth", "exact_stop"};
   return {otherwise};
 }
 
-[[nodiscard]] std::string name_of_way(const testing::TestParamInfo<const char*>& way) {
-  return std::string(way.param) == "smooth" ? "Smooth" : "ExactStop";
+[[nodiscard]] std::string name_of_transition(
+    const testing::TestParamInfo<const char*>& transition) {
+  return std::string(transition.param) == "smooth" ? "Smooth" : "ExactStop";
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, StationDeath, testing::ValuesIn(ways("exact_stop")), name_of_way);
-INSTANTIATE_TEST_SUITE_P(Of, StationDeathInAnArc, testing::ValuesIn(ways("smooth")), name_of_way);
+INSTANTIATE_TEST_SUITE_P(Of, StationDeath, testing::ValuesIn(transitions("exact_stop")),
+                         name_of_transition);
+INSTANTIATE_TEST_SUITE_P(Of, StationDeathInAnArc, testing::ValuesIn(transitions("smooth")),
+                         name_of_transition);
 
 }  // namespace
 }  // namespace meridian::test

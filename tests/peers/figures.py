@@ -64,8 +64,8 @@ def between(a, b, share):
     """On the great circle from a to b."""
     share, whole = share[:, None], angles(a, b)[:, None]
     is_turn = whole > 1e-9
-    on_way = numpy.sin((1 - share) * whole) * a + numpy.sin(share * whole) * b
-    return numpy.where(is_turn, on_way / numpy.where(is_turn, numpy.sin(whole), 1), a)
+    on_arc = numpy.sin((1 - share) * whole) * a + numpy.sin(share * whole) * b
+    return numpy.where(is_turn, on_arc / numpy.where(is_turn, numpy.sin(whole), 1), a)
 
 
 def deviations(points, tips, axes):
@@ -76,10 +76,10 @@ def deviations(points, tips, axes):
     for n in range(0, len(tips), CHUNK):
         tip, axis = tips[n:n + CHUNK], axes[n:n + CHUNK]
         last = min(first + AHEAD, len(path) - 1)
-        begin, way = path[first:last], numpy.diff(path[first:last + 1], axis=0)
-        square = numpy.maximum((way**2).sum(1), 1e-30)
-        share = numpy.clip(((tip[:, None] - begin) * way).sum(2) / square, 0, 1)
-        off = numpy.linalg.norm(tip[:, None] - begin - share[..., None] * way, axis=2)
+        begin, step = path[first:last], numpy.diff(path[first:last + 1], axis=0)
+        square = numpy.maximum((step**2).sum(1), 1e-30)
+        share = numpy.clip(((tip[:, None] - begin) * step).sum(2) / square, 0, 1)
+        off = numpy.linalg.norm(tip[:, None] - begin - share[..., None] * step, axis=2)
         at, row = off.argmin(1), numpy.arange(len(tip))
         tip_mm = max(tip_mm, off[row, at].max())
         want = between(normal[first + at], normal[first + at + 1], share[row, at])

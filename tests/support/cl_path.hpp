@@ -41,10 +41,10 @@ struct ClPath {
 
 /// How far `pose` is from the way, in tolerances: the least, over the way, of the larger of tip and
 /// axis deviation, each in its tolerance. 1 is just allowed.
-[[nodiscard]] inline double deviation(const ClPath& way, const ToolPose& pose, double tip_mm,
+[[nodiscard]] inline double deviation(const ClPath& path, const ToolPose& pose, double tip_mm,
                                       double axis_rad) {
   const auto off = [&](double share) {
-    const ToolPose at = way.at(share);
+    const ToolPose at = path.at(share);
     return std::max((pose.tip - at.tip).norm() / tip_mm, angle_of(pose.axis, at.axis) / axis_rad);
   };
   constexpr int kPlaces = 16;
@@ -65,18 +65,18 @@ struct ClPath {
 }
 
 /// The ways of the motion blocks behind the first, which only says where the path begins.
-[[nodiscard]] inline std::vector<ClPath> ways_of(const std::vector<ClBlock>& blocks) {
-  std::vector<ClPath> ways;
+[[nodiscard]] inline std::vector<ClPath> paths_of(const std::vector<ClBlock>& blocks) {
+  std::vector<ClPath> paths;
   ToolPose last{Vector3::Zero(), Vector3::UnitZ()};
   bool has_last = false;
   for (const ClBlock& block : blocks) {
     if (!is_motion(block.kind)) continue;
     const ToolPose end{to_vector(block.tip_mm), to_vector(block.axis).normalized()};
-    if (has_last) ways.push_back({last, end, block});
+    if (has_last) paths.push_back({last, end, block});
     last = end;
     has_last = true;
   }
-  return ways;
+  return paths;
 }
 
 }  // namespace meridian::test

@@ -55,8 +55,8 @@ class SampleRun {
   /// s(u) = 35u⁴ - 84u⁵ + 70u⁶ - 20u⁷: largest slope 2.1875, no jerk at the ends.
   void move(const ToolPose& from, const ToolPose& to, const ClBlock& block) {
     const GreatCircle circle = find_great_circle(from.axis, to.axis);
-    const double way = (to.tip - from.tip).norm();
-    const double min = std::max({2.1875 * way / (0.9 * block.feed), 6.0 * circle.turn, 0.05});
+    const double distance = (to.tip - from.tip).norm();
+    const double min = std::max({2.1875 * distance / (0.9 * block.feed), 6.0 * circle.turn, 0.05});
     const double period = static_cast<double>(model_.cycle_ns) * 1e-9;
     const double duration = period * std::ceil(min / period);
     for (double t = period; t < duration + 0.5 * period; t += period) {

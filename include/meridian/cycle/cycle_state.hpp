@@ -128,7 +128,7 @@ struct Jogging {
   int joint = -1;          ///< that `axis` moves; from kMaxJoints on a ToolAxis; -1: none yet
   bool is_ready = false;   ///< `axis` may move
   JogAxis axis;
-  ToolPath way;  ///< of a ToolAxis
+  ToolPath tool_path;  ///< of a ToolAxis
   ToolSurvey survey;
   JogRates fault;  ///< what a FaultStop may use
 

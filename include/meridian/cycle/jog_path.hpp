@@ -42,13 +42,15 @@ struct ToolPath {
 };
 
 template <class S>
-[[nodiscard]] inline Pose<S> pose_on(const ToolPath& way, const S& s) noexcept {
+[[nodiscard]] inline Pose<S> pose_on(const ToolPath& tool_path, const S& s) noexcept {
   Pose<S> pose;
-  const SinCos<S> turn = sin_cos(way.is_tilt ? s : S(0.0));
+  const SinCos<S> turn = sin_cos(tool_path.is_tilt ? s : S(0.0));
   for (std::size_t i = 0; i < 3; ++i) {
-    pose.tip[i] = way.is_tilt ? S(way.tip[i]) : S(way.tip[i] + s * way.direction[i]);
-    pose.axis[i] =
-        way.is_tilt ? S(turn.cos * way.axis[i] + turn.sin * way.direction[i]) : S(way.axis[i]);
+    pose.tip[i] =
+        tool_path.is_tilt ? S(tool_path.tip[i]) : S(tool_path.tip[i] + s * tool_path.direction[i]);
+    pose.axis[i] = tool_path.is_tilt
+                       ? S(turn.cos * tool_path.axis[i] + turn.sin * tool_path.direction[i])
+                       : S(tool_path.axis[i]);
   }
   return pose;
 }
@@ -56,19 +58,21 @@ template <class S>
 /// The joints at `s`, in the windings nearest to `reference`; not kOk: do not
 /// use them.
 template <class S>
-[[nodiscard]] inline Solution<S> joints_on(const MachineModel& machine, const ToolPath& way,
+[[nodiscard]] inline Solution<S> joints_on(const MachineModel& machine, const ToolPath& tool_path,
                                            const S& s, const JointVector& reference) noexcept {
-  if (way.is_held) {
-    Solution<S> held = solve_held(machine, way.tool_length_mm, pose_on(way, s), S(way.free));
+  if (tool_path.is_held) {
+    Solution<S> held =
+        solve_held(machine, tool_path.tool_length_mm, pose_on(tool_path, s), S(tool_path.free));
     for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
       if (!machine.joints[i].is_rotary) continue;
       held.q[i] += kTurn_rad * whole_turns(value_of(held.q[i]), reference[i]);
     }
     return held;
   }
-  Solution<S> at = solve(machine, way.tool_length_mm, pose_on(way, s), way.branch, reference);
+  Solution<S> at =
+      solve(machine, tool_path.tool_length_mm, pose_on(tool_path, s), tool_path.branch, reference);
   // Where the axis stands still the pole holds nobody up.
-  if (at.status == SolveStatus::kAtPole && !way.is_tilt) at.status = SolveStatus::kOk;
+  if (at.status == SolveStatus::kAtPole && !tool_path.is_tilt) at.status = SolveStatus::kOk;
   return at;
 }
 
@@ -101,9 +105,9 @@ template <class S>
 
 /// Lays a way through where the tool is; false where no solution of the inverse
 /// kinematics gives the joints back.
-[[nodiscard]] inline bool lay_way(const MachineModel& machine, const JointVector& joints,
-                                  double tool_length_mm, ToolAxis direction,
-                                  ToolPath& way) noexcept {
+[[nodiscard]] inline bool find_tool_path(const MachineModel& machine, const JointVector& joints,
+                                         double tool_length_mm, ToolAxis direction,
+                                         ToolPath& tool_path) noexcept {
   const ToolPose pose = forward(machine, tool_length_mm, joints);
   const Array3 z = unit_of({pose.axis[0], pose.axis[1], pose.axis[2]});
   // W's x, or y, without its part along z.
@@ -112,33 +116,33 @@ template <class S>
   x[k] += 1;
   x = unit_of(x);
   const Array3 y{z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]};
-  way.tip = {pose.tip[0], pose.tip[1], pose.tip[2]};
-  way.axis = z;
-  way.is_tilt = direction >= ToolAxis::kTiltX;
-  way.tool_length_mm = tool_length_mm;
+  tool_path.tip = {pose.tip[0], pose.tip[1], pose.tip[2]};
+  tool_path.axis = z;
+  tool_path.is_tilt = direction >= ToolAxis::kTiltX;
+  tool_path.tool_length_mm = tool_length_mm;
   switch (direction) {
     case ToolAxis::kX:
     case ToolAxis::kTiltY:  // about y, z turns towards x
-      way.direction = x;
+      tool_path.direction = x;
       break;
     case ToolAxis::kY:
-      way.direction = y;
+      tool_path.direction = y;
       break;
     case ToolAxis::kZ:
-      way.direction = z;
+      tool_path.direction = z;
       break;
     case ToolAxis::kTiltX:  // about x, z turns towards -y
-      way.direction = {-y[0], -y[1], -y[2]};
+      tool_path.direction = {-y[0], -y[1], -y[2]};
       break;
   }
   const int free = redundant_joint(machine);
-  way.free = free >= 0 ? joints[static_cast<std::size_t>(free)] : 0;
-  way.is_held = way.is_tilt && free >= 0;
-  if (way.is_held && lies_in_plane(machine, way, joints)) return true;
-  way.is_held = false;
+  tool_path.free = free >= 0 ? joints[static_cast<std::size_t>(free)] : 0;
+  tool_path.is_held = tool_path.is_tilt && free >= 0;
+  if (tool_path.is_held && lies_in_plane(machine, tool_path, joints)) return true;
+  tool_path.is_held = false;
   for (int branch = 0; branch < branch_count(machine); ++branch) {
-    way.branch = static_cast<std::uint8_t>(branch);
-    const Solution<double> at = joints_on(machine, way, 0.0, joints);
+    tool_path.branch = static_cast<std::uint8_t>(branch);
+    const Solution<double> at = joints_on(machine, tool_path, 0.0, joints);
     double apart = 0;
     for (std::size_t i = 0; i < joints.size(); ++i) {
       apart = std::max(apart, std::abs(at.q[i] - joints[i]));

@@ -29,11 +29,11 @@ namespace meridian {
 class ToolSurvey {
  public:
   ToolSurvey() = default;
-  ToolSurvey(const MachineModel& machine, const ToolPath& way, const JointVector& joints,
+  ToolSurvey(const MachineModel& machine, const ToolPath& tool_path, const JointVector& joints,
              double distance) noexcept {
-    const double whole = way.is_tilt ? kToolPath_rad : kToolPath_mm;
+    const double whole = tool_path.is_tilt ? kToolPath_rad : kToolPath_mm;
     step_ = std::min(distance > 0 ? distance : whole, whole) / kSteps;
-    is_over_ = !look(machine, way, 0, joints, middle_);
+    is_over_ = !look(machine, tool_path, 0, joints, middle_);
     last_ = middle_;
     if (!is_over_) keep(machine, middle_);
   }
@@ -41,19 +41,19 @@ class ToolSurvey {
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
 
   /// Looks at the next places.
-  void go_on(const MachineModel& machine, const ToolPath& way) noexcept {
+  void go_on(const MachineModel& machine, const ToolPath& tool_path) noexcept {
     constexpr int kPlaces = 2;
     for (int n = 0; n < kPlaces && !is_over_; ++n) {
       Place next;
       const double s = (is_back_ ? -1 : 1) * (steps_ + 1) * step_;
-      const bool goes_on = look(machine, way, s, values_of(last_), next) &&
+      const bool goes_on = look(machine, tool_path, s, values_of(last_), next) &&
                            is_even(machine, last_, next) && stays_in(machine, last_, next) &&
-                           keeps_tip_in(machine, way.tool_length_mm, last_, next) &&
+                           keeps_tip_in(machine, tool_path.tool_length_mm, last_, next) &&
                            steps_ < kSteps;
       if (goes_on) {
         keep(machine, next);
         const bool is_in = comes_in(machine, last_, next) ||
-                           brings_tip_in(machine, way.tool_length_mm, last_, next);
+                           brings_tip_in(machine, tool_path.tool_length_mm, last_, next);
         if (is_in) (is_back_ ? last_out_ : first_in_) = s;
         last_ = next;
         (is_back_ ? low_ : high_) = s;
@@ -70,12 +70,13 @@ class ToolSurvey {
 
   /// After it: the way as an axis at its middle, with rates that hold all
   /// along.
-  [[nodiscard]] JogRoom room(const MachineModel& machine, const ToolPath& way) const noexcept {
+  [[nodiscard]] JogRoom room(const MachineModel& machine,
+                             const ToolPath& tool_path) const noexcept {
     JogRoom room;
     room.axis.low = first_in_ > 0 ? first_in_ : low_;
     room.axis.high = last_out_ < 0 && !(first_in_ > 0) ? last_out_ : high_;
     const JogRates max =
-        way.is_tilt ? JogRates{10, 1e3, 1e5} : JogRates{machine.max_feed_mm_per_s, 1e5, 1e7};
+        tool_path.is_tilt ? JogRates{10, 1e3, 1e5} : JogRates{machine.max_feed_mm_per_s, 1e5, 1e7};
     room.axis.rates = room.fault = max;
     for (int i = 0; i < limited_count(machine); ++i) {
       const JointLimits& limits = limited_spec(machine, i).limits;
@@ -114,9 +115,9 @@ class ToolSurvey {
   }
 
   /// False where no joints are there.
-  [[nodiscard]] static bool look(const MachineModel& machine, const ToolPath& way, double s,
+  [[nodiscard]] static bool look(const MachineModel& machine, const ToolPath& tool_path, double s,
                                  const JointVector& reference, Place& place) noexcept {
-    const auto at = joints_on(machine, way, Jet<3>::variable(s), reference);
+    const auto at = joints_on(machine, tool_path, Jet<3>::variable(s), reference);
     if (at.status != SolveStatus::kOk) return false;
     place = limited_of(machine, at.q);
     return true;

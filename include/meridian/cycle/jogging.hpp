@@ -73,10 +73,10 @@ inline void take_room(Jogging& jogging, const JogRoom& room) noexcept {
 }
 
 /// Goes on with the survey of the tool's way, after which it may move.
-[[gnu::noinline]] inline void survey_way(Jogging& jogging, const MachineModel& machine) noexcept {
+[[gnu::noinline]] inline void survey_path(Jogging& jogging, const MachineModel& machine) noexcept {
   if (jogging.is_ready || jogging.joint < kMaxJoints) return;
-  jogging.survey.go_on(machine, jogging.way);
-  if (jogging.survey.is_over()) take_room(jogging, jogging.survey.room(machine, jogging.way));
+  jogging.survey.go_on(machine, jogging.tool_path);
+  if (jogging.survey.is_over()) take_room(jogging, jogging.survey.room(machine, jogging.tool_path));
 }
 
 /// What the order in force is for, as Jogging::joint says it.
@@ -94,7 +94,7 @@ inline void choose_axis(Jogging& jogging, const MachineModel& machine, const Joi
                         std::uint32_t referenced) noexcept {
   const JogOrder& order = jogging.order;
   const int joint = joint_of(order);
-  if (is_in_hand(jogging)) return survey_way(jogging, machine);
+  if (is_in_hand(jogging)) return survey_path(jogging, machine);
   if (!jogging.axis.is_at_rest()) return;
   jogging.joint = -1;
   jogging.is_ready = false;
@@ -103,13 +103,13 @@ inline void choose_axis(Jogging& jogging, const MachineModel& machine, const Joi
     jogging.joint = joint;
     return take_room(jogging, jog_room(machine, order.tool_length_mm, joints, joint, referenced));
   }
-  const bool has_way = lay_way(machine, joints, order.tool_length_mm,
-                               static_cast<ToolAxis>(order.joint), jogging.way);
-  if (!has_way) return;
+  const bool has_path = find_tool_path(machine, joints, order.tool_length_mm,
+                                       static_cast<ToolAxis>(order.joint), jogging.tool_path);
+  if (!has_path) return;
   jogging.joint = joint;
   jogging.distance = order.distance;
   jogging.axis = {};
-  jogging.survey = ToolSurvey(machine, jogging.way, joints, order.distance);
+  jogging.survey = ToolSurvey(machine, jogging.tool_path, joints, order.distance);
 }
 
 /// Takes the hand off; the joints stay where they are.
@@ -130,7 +130,7 @@ inline void end_jogging(CycleState& state) noexcept {
     return true;
   }
   const auto at =
-      joints_on(machine, jogging.way, Jet<1>::variable(jogging.axis.at.q), state.joints);
+      joints_on(machine, jogging.tool_path, Jet<1>::variable(jogging.axis.at.q), state.joints);
   if (at.status != SolveStatus::kOk) return false;
   for (std::size_t i = 0; i < static_cast<std::size_t>(machine.joint_count); ++i) {
     state.joints[i] = value_of(at.q[i]);

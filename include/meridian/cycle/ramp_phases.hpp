@@ -30,8 +30,8 @@ struct RampPhases {
 [[nodiscard]] inline RampPhases lay_out_ramp(double value, double slope, double target,
                                              double max_slope, double bend) noexcept {
   const double rest = value + 0.5 * slope * std::abs(slope) / bend;  // after full braking
-  const double way = target >= rest ? 1.0 : -1.0;
-  const double along = way * slope, distance = way * (target - value);
+  const double sign = target >= rest ? 1.0 : -1.0;
+  const double along = sign * slope, distance = sign * (target - value);
   const double peak =
       std::min(max_slope, std::sqrt(std::max(0.0, bend * distance + 0.5 * along * along)));
   const double gained = (peak * peak - 0.5 * along * along) / bend;  // in the first and third phase
@@ -39,8 +39,8 @@ struct RampPhases {
   ramp.left[0] = std::max(0.0, (peak - along) / bend);
   ramp.left[1] = peak > 0 ? std::max(0.0, (distance - gained) / peak) : 0.0;
   ramp.left[2] = peak / bend;
-  ramp.bend[0] = way * bend;
-  ramp.bend[2] = -way * bend;
+  ramp.bend[0] = sign * bend;
+  ramp.bend[2] = -sign * bend;
   ramp.phase = 0;
   return ramp;
 }

@@ -70,19 +70,19 @@ inline void lay_out_stop(CycleState& state, const PathState& begin,
 }
 
 /// Path length to the end of the block that the rate brakes for.
-[[nodiscard]] inline double way_to_block_end(const Cycle& c) noexcept {
+[[nodiscard]] inline double distance_to_block_end(const Cycle& c) noexcept {
   const SingleBlock& single = c.state.single_block;
   MotionAhead ahead(c.reader);
   const TimePiece* piece = c.reader.piece();
-  double way = -c.state.on_path.s;
+  double distance = -c.state.on_path.s;
   for (int n = 0; n < single.pieces; ++n) {
     const TimePiece* next = ahead.next();
     if (next == nullptr) break;
     const PathPiece* path = c.reader.path_of(*piece);
-    if (next->path_index != piece->path_index && path != nullptr) way += path->length;
+    if (next->path_index != piece->path_index && path != nullptr) distance += path->length;
     piece = next;
   }
-  return way + state_at(*piece, single.time).s;
+  return distance + state_at(*piece, single.time).s;
 }
 
 /// Whether a hold from `begin` with `authority` would end at the end of a block that the rate
@@ -91,7 +91,7 @@ inline void lay_out_stop(CycleState& state, const PathState& begin,
 [[nodiscard]] inline bool passes_block_end(const Cycle& c, const PathState& begin,
                                            const StopMargin& authority) noexcept {
   if (!c.state.single_block.is_braking() || !(authority.jerk > 0)) return false;
-  return StopLaw(begin, authority).distance() > way_to_block_end(c) - kSameEnd_mm;
+  return StopLaw(begin, authority).distance() > distance_to_block_end(c) - kSameEnd_mm;
 }
 
 /// Begins the stop from where and how the machine moves along its path; nothing moves: it is over

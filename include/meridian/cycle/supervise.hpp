@@ -267,8 +267,9 @@ inline void check_drives(Cycle& c) noexcept {
     const double speed = std::abs(c.state.velocity[i]);
     const double decel = c.machine.joints[i].limits.fault_acceleration;
     const double time = std::min(ramp_time_of_drives(c), speed / decel);
-    const double way = speed * (c.dt * c.machine.bridge_cycles + time) - decel * time * time / 2;
-    joints[i] += std::copysign(way, c.state.velocity[i]);
+    const double distance =
+        speed * (c.dt * c.machine.bridge_cycles + time) - decel * time * time / 2;
+    joints[i] += std::copysign(distance, c.state.velocity[i]);
   }
   return joints;
 }

@@ -208,26 +208,27 @@ template <class S>
 /// What the linear joints have to add for the tip to come to `tip`, in the frame of a, or of b
 /// where they stand behind it: eq. 4.9 of a machine whose linear joints are neighbours.
 template <class S>
-[[nodiscard]] inline Vec3<S> way_of_slides(const ChainKinematics& k, double tool_length_mm,
-                                           const Vec3<S>& tip, const SinCos<S>& a,
-                                           const SinCos<S>& b) noexcept {
+[[nodiscard]] inline Vec3<S> displacement_of_slides(const ChainKinematics& k, double tool_length_mm,
+                                                    const Vec3<S>& tip, const SinCos<S>& a,
+                                                    const SinCos<S>& b) noexcept {
   const double s = k.psi_sin, c = k.psi_cos;
-  Vec3<S> way = in_frame_a(k, tip);
-  for (int i = 0; i < 3; ++i) way[i] -= k.origin_a[i];
+  Vec3<S> displacement = in_frame_a(k, tip);
+  for (int i = 0; i < 3; ++i) displacement[i] -= k.origin_a[i];
   Vec3<S> there;
   for (int i = 0; i < 3; ++i) there[i] = S(k.b_to_gauge[i] - tool_length_mm * k.home_axis_b[i]);
-  if (k.group != 0) way = turn_about_z(SinCos<S>{-a.sin, a.cos}, way);
+  if (k.group != 0) displacement = turn_about_z(SinCos<S>{-a.sin, a.cos}, displacement);
   if (k.group == 2) {
-    for (int i = 0; i < 3; ++i) way[i] -= k.a_to_b[i];
-    way = {c * way[0] - s * way[2], way[1], s * way[0] + c * way[2]};
-    way = turn_about_z(SinCos<S>{-b.sin, b.cos}, way);
+    for (int i = 0; i < 3; ++i) displacement[i] -= k.a_to_b[i];
+    displacement = {c * displacement[0] - s * displacement[2], displacement[1],
+                    s * displacement[0] + c * displacement[2]};
+    displacement = turn_about_z(SinCos<S>{-b.sin, b.cos}, displacement);
   } else {
     there = turn_about_z(b, there);
     there = {c * there[0] + s * there[2] + k.a_to_b[0], there[1] + k.a_to_b[1],
              c * there[2] - s * there[0] + k.a_to_b[2]};
     if (k.group == 0) there = turn_about_z(a, there);
   }
-  return {way[0] - there[0], way[1] - there[1], way[2] - there[2]};
+  return {displacement[0] - there[0], displacement[1] - there[1], displacement[2] - there[2]};
 }
 
 /// The linear joints that put the tip on `tip` with the rotary joints as given, eq. 4.9. Returns
@@ -239,23 +240,24 @@ template <class S>
                                     const Vec3<S>& tip, const SinCos<S>& a, const SinCos<S>& b,
                                     Joints<S>& q) noexcept {
   if (k.group >= 0) {
-    const Vec3<S> way = way_of_slides(k, tool_length_mm, tip, a, b);
+    const Vec3<S> displacement = displacement_of_slides(k, tool_length_mm, tip, a, b);
     for (int i = 0; i < 3; ++i) {
-      q[k.linear[i].joint] =
-          k.place(i, 0) * way[0] + k.place(i, 1) * way[1] + k.place(i, 2) * way[2];
+      q[k.linear[i].joint] = k.place(i, 0) * displacement[0] + k.place(i, 1) * displacement[1] +
+                             k.place(i, 2) * displacement[2];
     }
     return true;
   }
   const Vec3<S> start = unmoved_tip(k, tool_length_mm, a, b);
-  const Vec3<S> way{tip[0] - start[0], tip[1] - start[1], tip[2] - start[2]};
+  const Vec3<S> displacement{tip[0] - start[0], tip[1] - start[1], tip[2] - start[2]};
   const std::array<Vec3<S>, 3> d{column(k, 0, a, b), column(k, 1, a, b), column(k, 2, a, b)};
   const std::array<Vec3<S>, 3> dual{cross(d[1], d[2]), cross(d[2], d[0]), cross(d[0], d[1])};
   const S volume = scalar_product(d[0], dual[0]);
   if (!(std::abs(value_of(volume)) > kMinVolume)) return false;
   const S per_volume = 1.0 / volume;
-  for (int i = 0; i < 3; ++i) q[k.linear[i].joint] = scalar_product(dual[i], way) * per_volume;
+  for (int i = 0; i < 3; ++i)
+    q[k.linear[i].joint] = scalar_product(dual[i], displacement) * per_volume;
   if (std::abs(value_of(volume)) < kRefinedVolume) {
-    Vec3<S> rest = way;
+    Vec3<S> rest = displacement;
     for (int i = 0; i < 3; ++i) {
       for (int row = 0; row < 3; ++row) rest[row] -= d[i][row] * q[k.linear[i].joint];
     }

@@ -51,9 +51,9 @@ void BlockFeed::explain(const ClBlock& block, double programmed_feed) {
   if (is_motion(block.kind)) {
     const ToolPose end{to_vector(block.tip_mm), to_vector(block.axis)};
     if (pose_) {  // the first one is where the approach ends
-      const PathPiece way = block.is_arc ? make_arc(*pose_, end, block) : make_line(*pose_, end);
-      tip_mm = tip_length(way);
-      path_mm = way.length;
+      const PathPiece path = block.is_arc ? make_arc(*pose_, end, block) : make_line(*pose_, end);
+      tip_mm = tip_length(path);
+      path_mm = path.length;
     }
     pose_ = end;
   }

@@ -85,7 +85,7 @@ void Explainer::add_ease(std::uint64_t first, std::uint64_t last, double deviati
 void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, const PathPiece* path,
                           double piece_time, double tool_length_mm) {
   const Vector3 tip = forward(model_, tool_length_mm, record.joints).tip;
-  const double way_mm = has_tip_ ? (tip - tip_).norm() : 0;
+  const double distance_mm = has_tip_ ? (tip - tip_).norm() : 0;
   tip_ = tip;
   has_tip_ = true;
   const bool is_moving = piece != nullptr && path != nullptr && piece->kind == TimeKind::kMove;
@@ -123,12 +123,12 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
     cause = Cause::kWaiting;
     is_on_span_ = false;
   }
-  share_out(block, place, view, view.speed * std::max(record.rate, 0.0), way_mm, cause);
+  share_out(block, place, view, view.speed * std::max(record.rate, 0.0), distance_mm, cause);
   if (take_cycle_) {
     const Open* const open = find(block);
-    take_cycle_({period_s_, way_mm, way_mm / period_s_,
-                 open != nullptr ? open->block.programmed_mm_per_s : 0, view.limit,
-                 tool_length_mm, cause});
+    take_cycle_({period_s_, distance_mm, distance_mm / period_s_,
+                 open != nullptr ? open->block.programmed_mm_per_s : 0, view.limit, tool_length_mm,
+                 cause});
   }
   ++explanation_.cycles;
   explanation_.time_s = period_s_ * static_cast<double>(explanation_.cycles);
@@ -199,7 +199,7 @@ std::uint64_t Explainer::find_block(double place, std::uint64_t from) {
 void Explainer::give(Open& open, double time_s, const LimitView& view, double speed,
                      double feed_mm_per_s, std::optional<Cause> cause) {
   const bool is_first = !(open.block.time_s > 0);
-  open.block.way_mm += feed_mm_per_s * time_s;
+  open.block.distance_mm += feed_mm_per_s * time_s;
   open.block.min_mm_per_s =
       is_first ? feed_mm_per_s : std::min(open.block.min_mm_per_s, feed_mm_per_s);
   const double programmed = open.block.programmed_mm_per_s;
@@ -210,8 +210,8 @@ void Explainer::give(Open& open, double time_s, const LimitView& view, double sp
 }
 
 void Explainer::share_out(std::uint64_t last, double place, const LimitView& view, double speed,
-                          double way_mm, std::optional<Cause> cause) {
-  const double feed = way_mm / period_s_, passed = place - place_;
+                          double distance_mm, std::optional<Cause> cause) {
+  const double feed = distance_mm / period_s_, passed = place - place_;
   double left_s = period_s_;
   for (std::uint64_t n = running_; is_on_span_ && passed > 0 && n < last; ++n) {
     Open* const open = find(n);
@@ -295,7 +295,7 @@ void Explainer::add_to_stretch(const ExplainedBlock& block) {
   ++stretch_.blocks;
   stretch_.time_s += block.time_s;
   stretch_.lost_s += block.lost_s;
-  stretch_.way_mm += block.way_mm;
+  stretch_.distance_mm += block.distance_mm;
   stretch_.programmed_mm_per_s = std::max(stretch_.programmed_mm_per_s, block.programmed_mm_per_s);
   stretch_.min_mm_per_s = std::min(stretch_.min_mm_per_s, block.min_mm_per_s);
 }

@@ -15,8 +15,8 @@ namespace meridian::simulate {
 
 /// What the picture wants of every cycle. Units: s, mm.
 struct ExplainedCycle {
-  double time_s = 0;  ///< that it took
-  double way_mm = 0;  ///< of the tip
+  double time_s = 0;       ///< that it took
+  double distance_mm = 0;  ///< of the tip
   double feed_mm_per_s = 0, programmed_mm_per_s = 0;
   LimitId limit = kNoLimit;
   double tool_length_mm = 0;
@@ -85,7 +85,7 @@ class Explainer {
   /// Shares a cycle among the blocks that it passed, up to `place` in block `last`. `cause`
   /// nothing: it lies ahead.
   void share_out(std::uint64_t last, double place, const LimitView& view, double speed,
-                 double way_mm, std::optional<Cause> cause);
+                 double distance_mm, std::optional<Cause> cause);
   void give(Open& open, double time_s, const LimitView& view, double speed, double feed_mm_per_s,
             std::optional<Cause> cause);
   void account(Open& open, LimitId limit, std::optional<Cause> cause, double time_s,

@@ -22,7 +22,7 @@ struct ExplainedBlock {
   double programmed_mm_per_s = 0;  ///< tip feed; 0: none, or the tip rests
   double time_s = 0;               ///< taken
   double lost_s = 0;               ///< of it: more than the programmed feed takes; cuts alone
-  double way_mm = 0;               ///< of the tip in that time
+  double distance_mm = 0;          ///< of the tip in that time
   double min_mm_per_s = 0;         ///< slowest cycle; blocks shorter than one have their mean
   double eased_rad = 0;            ///< beside the pole, largest
   std::array<float, kLimitIds> by_limit{};  ///< s of time at each limit
@@ -30,7 +30,9 @@ struct ExplainedBlock {
   std::array<float, kLimitIds> lost_by_limit{};
   std::array<float, kCauses> lost_by_cause{};
 
-  [[nodiscard]] double mean_mm_per_s() const noexcept { return time_s > 0 ? way_mm / time_s : 0; }
+  [[nodiscard]] double mean_mm_per_s() const noexcept {
+    return time_s > 0 ? distance_mm / time_s : 0;
+  }
   /// What cost most; where nothing was lost, what held longest.
   [[nodiscard]] LimitId main_limit() const noexcept;
   [[nodiscard]] Cause main_cause() const noexcept;
@@ -42,7 +44,7 @@ struct ExplainedStretch {
   std::uint64_t blocks = 0;
   LimitId limit = kNoLimit;
   Cause cause = Cause::kPath;
-  double time_s = 0, lost_s = 0, way_mm = 0;
+  double time_s = 0, lost_s = 0, distance_mm = 0;
   double programmed_mm_per_s = 0;  ///< largest
   double min_mm_per_s = 0;
 };

@@ -89,7 +89,7 @@ std::string to_text(const Explanation& explanation, const MachineModel& model) {
     append(out, "%-17s %9llu %9.3f %9.3f %13.0f %8.0f %8.0f  %s, %s\n", lines,
            static_cast<Count>(stretch.blocks), stretch.lost_s, stretch.time_s,
            units::per_min_from_per_s(stretch.programmed_mm_per_s),
-           units::per_min_from_per_s(stretch.way_mm / stretch.time_s),
+           units::per_min_from_per_s(stretch.distance_mm / stretch.time_s),
            units::per_min_from_per_s(stretch.min_mm_per_s), name_of(stretch.limit, model).c_str(),
            name_of(stretch.cause));
   }

@@ -27,7 +27,7 @@ constexpr const char* kOther = "#bbbbbb";
 
 void FeedPicture::add_to(Column& to, const Column& from) {
   to.time_s += from.time_s;
-  to.way_mm += from.way_mm;
+  to.distance_mm += from.distance_mm;
   to.programmed_mm_per_s = std::max(to.programmed_mm_per_s, from.programmed_mm_per_s);
   for (std::size_t n = 0; n < kLimitIds; ++n) to.by_limit[n] += from.by_limit[n];
 }
@@ -49,7 +49,7 @@ void FeedPicture::add(const ExplainedCycle& cycle) {
     columns_.emplace_back();
     cycles_in_last_ = 0;
   }
-  Column one{cycle.time_s, cycle.way_mm, cycle.programmed_mm_per_s, {}};
+  Column one{cycle.time_s, cycle.distance_mm, cycle.programmed_mm_per_s, {}};
   one.by_limit[cycle.limit] = static_cast<float>(cycle.time_s);
   add_to(columns_.back(), one);
   ++cycles_in_last_;
@@ -67,15 +67,16 @@ std::optional<plot::PlotError> FeedPicture::draw(const std::string& file,
 /// mm/min, place of its limit in `shown`.
 void FeedPicture::print_columns(std::FILE* out, const std::vector<LimitId>& shown) const {
   std::fputs("$feed << EOD\n", out);
-  double time = 0, way = 0;
+  double time = 0, distance = 0;
   for (const Column& column : columns_) {
     const LimitId main = find_main(column.by_limit);
     const auto place = std::find(shown.begin(), shown.end(), main) - shown.begin();
-    std::fprintf(out, "%.7g %.7g %.7g %.7g %.5g %.5g %d\n", time, time + column.time_s, way,
-                 way + column.way_mm, units::per_min_from_per_s(column.way_mm / column.time_s),
+    std::fprintf(out, "%.7g %.7g %.7g %.7g %.5g %.5g %d\n", time, time + column.time_s, distance,
+                 distance + column.distance_mm,
+                 units::per_min_from_per_s(column.distance_mm / column.time_s),
                  units::per_min_from_per_s(column.programmed_mm_per_s), static_cast<int>(place));
     time += column.time_s;
-    way += column.way_mm;
+    distance += column.distance_mm;
   }
   std::fputs("EOD\n", out);
 }
@@ -85,7 +86,7 @@ void FeedPicture::print(std::FILE* out, const std::string& title) const {
   double whole = 0, max = 0;
   for (const Column& column : columns_) {
     whole += column.time_s;
-    max = std::max({max, column.way_mm / column.time_s, column.programmed_mm_per_s});
+    max = std::max({max, column.distance_mm / column.time_s, column.programmed_mm_per_s});
     for (std::size_t n = 0; n < kLimitIds; ++n) time[n] += static_cast<double>(column.by_limit[n]);
   }
   std::vector<LimitId> shown;

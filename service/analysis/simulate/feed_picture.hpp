@@ -30,7 +30,7 @@ class FeedPicture {
 
  private:
   struct Column {
-    double time_s = 0, way_mm = 0;
+    double time_s = 0, distance_mm = 0;
     double programmed_mm_per_s = 0;  ///< largest
     std::array<float, kLimitIds> by_limit{};
   };

@@ -95,8 +95,8 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
                          kVerdictNo);
   }
   const dds::Status status = *probing.link.status();
-  const double way_in_mm = (contact - probing.from).norm();
-  const double by_mm = std::min(*probing.options.retract_mm, way_in_mm);
+  const double approach_mm = (contact - probing.from).norm();
+  const double by_mm = std::min(*probing.options.retract_mm, approach_mm);
   const stream::MoveOrder order = order_of(probing, contact - by_mm * toward);
   const auto forecast = simulate::forecast(order.move, status.joints, probing.model);
   if (!forecast.refusal.empty()) return print_refusal(forecast.refusal);

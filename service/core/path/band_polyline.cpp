@@ -30,10 +30,10 @@ Vector3 axis_of(const Vector6& x) noexcept { return {x[3], x[4], x[5]}; }
 /// Whether some point of the chord from `a` to `b` lies within kPoleReach_rad of `pole` or its
 /// opposite.
 bool comes_near(const Vector3& pole, const Vector3& a, const Vector3& b) noexcept {
-  const Vector3 from = a.cross(pole), way = b.cross(pole) - from;
-  const double square = way.squaredNorm();
-  const double t = square > 0 ? std::clamp(-from.dot(way) / square, 0.0, 1.0) : 0.0;
-  return (from + t * way).squaredNorm() < kPoleReach_rad * kPoleReach_rad;
+  const Vector3 from = a.cross(pole), chord = b.cross(pole) - from;
+  const double square = chord.squaredNorm();
+  const double t = square > 0 ? std::clamp(-from.dot(chord) / square, 0.0, 1.0) : 0.0;
+  return (from + t * chord).squaredNorm() < kPoleReach_rad * kPoleReach_rad;
 }
 
 }  // namespace

@@ -175,8 +175,8 @@ struct BandSpline::Workspace {
     bool has_short = false;
     for (std::int64_t i = end; i > line.first() && line[i].u > span.u0; --i) {
       const BandVertex& vertex = line[i];
-      const double way = std::min(vertex.u, u1) - std::max(line[i - 1].u, span.u0);
-      time_s += std::max(way, 0.0) / vertex.u_speed_mm_per_s;
+      const double part = std::min(vertex.u, u1) - std::max(line[i - 1].u, span.u0);
+      time_s += std::max(part, 0.0) / vertex.u_speed_mm_per_s;
       has_short = has_short || vertex.is_short_in_time;
       if (!vertex.is_short_in_time) slowest = std::min(slowest, vertex.u_speed_mm_per_s);
     }
@@ -249,8 +249,8 @@ std::optional<AxisMark> BandSpline::next_axis() noexcept {
 
 bool BandSpline::is_done() const noexcept {
   const Workspace& w = *workspace_;
-  const bool has_no_way = w.line.is_complete() && w.line.last() < 1;
-  return has_no_way || (w.is_last && w.next_span >= w.committed);
+  const bool has_no_length = w.line.is_complete() && w.line.last() < 1;
+  return has_no_length || (w.is_last && w.next_span >= w.committed);
 }
 
 bool BandSpline::has_failed() const noexcept { return workspace_->has_failed; }

@@ -28,7 +28,7 @@ void LeaseCheck::forget(std::uint64_t service_id) {
   std::erase_if(others_, [&](const Other& other) { return other.service_id == service_id; });
 }
 
-bool LeaseCheck::gives_way(const Other& other, std::int64_t now_ns,
+bool LeaseCheck::yields_to(const Other& other, std::int64_t now_ns,
                            std::uint64_t master) const noexcept {
   if (!other.is_serving) return false;
   if (other.service_id == master) return true;
@@ -45,7 +45,7 @@ void LeaseCheck::check(std::int64_t now_ns, bool may_leave, std::uint64_t master
   }
   const auto is_before_us = [&](const Other& other) {
     return has_stepped_back_ ? other.is_serving || other.service_id < service_id_
-                             : gives_way(other, now_ns, master);
+                             : yields_to(other, now_ns, master);
   };
   has_stepped_back_ = may_leave && master != service_id_ &&
                       std::any_of(others_.begin(), others_.end(), is_before_us);

@@ -70,7 +70,7 @@ class LeaseCheck {
     std::int64_t lead_ns = std::numeric_limits<std::int64_t>::max();  ///< by which we served longer
   };
 
-  [[nodiscard]] bool gives_way(const Other& other, std::int64_t now_ns,
+  [[nodiscard]] bool yields_to(const Other& other, std::int64_t now_ns,
                                std::uint64_t master) const noexcept;
 
   std::uint64_t service_id_;

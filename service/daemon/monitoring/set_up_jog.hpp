@@ -45,12 +45,12 @@ inline constexpr double kSetUpShare = 0.9;  ///< servo loops overshoot
                                               double tool_length_mm) noexcept {
   constexpr double kAhead_mm = 0.5, kAhead_rad = 0.005;
   const Jogging& jogging = state.jogging;
-  const double ahead = jogging.way.is_tilt ? kAhead_rad : kAhead_mm;
+  const double ahead = jogging.tool_path.is_tilt ? kAhead_rad : kAhead_mm;
   double speed = 0;
   for (const double offset : {0.0, ahead, -ahead}) {
     const double s = jogging.axis.at.q + offset;
     const bool is_inside = s >= jogging.axis.low && s <= jogging.axis.high;
-    const auto at = joints_on(machine, jogging.way, Jet<1>::variable(s), state.joints);
+    const auto at = joints_on(machine, jogging.tool_path, Jet<1>::variable(s), state.joints);
     if (at.status != SolveStatus::kOk || (offset != 0 && !is_inside)) continue;
     const double here = set_up_speed(machine, limits, at.q, tool_length_mm);
     speed = offset == 0 ? here : std::min(speed, here);

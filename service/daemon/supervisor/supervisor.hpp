@@ -237,11 +237,11 @@ class Supervisor {
   /// How far the one change of the set-up has come that is being done.
   enum class SetUpPhase : std::uint8_t {
     kNone,
-    kOnItsWayToDisk,
+    kSaving,
     kAtTheCycle,
-    kOnItsWayBack,  ///< the cycle has refused it: the old set-up is written again
-    kAccepted,      ///< it is in force at the cycle, and passed on to the other threads
-    kReported       ///< it is in force: status and machine topic are to say so
+    kReverting,  ///< the cycle has refused it: the old set-up is written again
+    kAccepted,   ///< it is in force at the cycle, and passed on to the other threads
+    kReported    ///< it is in force: status and machine topic are to say so
   };
   telemetry::SetUpFile* set_up_file_ = nullptr;
   SetUpPhase set_up_phase_ = SetUpPhase::kNone;

@@ -100,7 +100,7 @@ void Supervisor::begin_set_up_change(const Pending& command) {
   }
   set_up_command_ = command;
   set_up_file_->ask(next_set_up_);
-  set_up_phase_ = SetUpPhase::kOnItsWayToDisk;
+  set_up_phase_ = SetUpPhase::kSaving;
 }
 
 bool Supervisor::change_frames(const Pending& command) {
@@ -144,7 +144,7 @@ bool Supervisor::change_tools(const Pending& command) {
 void Supervisor::work_on_set_up_change() {
   using Progress = telemetry::SetUpFile::Progress;
   switch (set_up_phase_) {
-    case SetUpPhase::kOnItsWayToDisk: {
+    case SetUpPhase::kSaving: {
       const Progress progress = set_up_file_->look();
       if (progress == Progress::kWritten) ask_cycle_for_set_up();
       if (progress != Progress::kFailed) return;
@@ -154,7 +154,7 @@ void Supervisor::work_on_set_up_change() {
           " refused: the set-up cannot be written: " + std::strerror(set_up_file_->error());
       return end_set_up_change();
     }
-    case SetUpPhase::kOnItsWayBack:
+    case SetUpPhase::kReverting:
       if (set_up_file_->look() != Progress::kAsked) end_set_up_change();
       return;
     case SetUpPhase::kAccepted:
@@ -196,7 +196,7 @@ void Supervisor::take_set_up_back(Refusal refusal, const std::string& text) {
   set_up_refusal_ = refusal;
   set_up_text_ = text;
   set_up_file_->ask(set_up_);
-  set_up_phase_ = SetUpPhase::kOnItsWayBack;
+  set_up_phase_ = SetUpPhase::kReverting;
 }
 
 void Supervisor::answer_set_up(bool is_accepted, Refusal refusal) {

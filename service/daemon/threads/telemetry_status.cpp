@@ -25,14 +25,14 @@ std::string TelemetryThread::silent_group(const Event& event) {
 
 bool TelemetryThread::take_approach() {
   if (!ports_.approach_for_status.refresh()) return false;
-  way_ = ports_.approach_for_status.latest();
+  planned_approach_ = ports_.approach_for_status.latest();
   approach_.clear();
-  is_approach_new_ = way_.is_planned;
-  if (!way_.is_planned) return false;
-  approach_ = telemetry::describe(way_, model_, dds::kMaxText);
-  const bool is_short = telemetry::is_short_of_clearance(way_, model_);
+  is_approach_new_ = planned_approach_.is_planned;
+  if (!planned_approach_.is_planned) return false;
+  approach_ = telemetry::describe(planned_approach_, model_, dds::kMaxText);
+  const bool is_short = telemetry::is_short_of_clearance(planned_approach_, model_);
   log_->log(is_short ? spdlog::level::warn : spdlog::level::info, "{}",
-            telemetry::describe(way_, model_, SIZE_MAX));
+            telemetry::describe(planned_approach_, model_, SIZE_MAX));
   return true;
 }
 
@@ -47,7 +47,8 @@ std::string TelemetryThread::with_approach(const std::string& words) const {
   const bool is_ahead = state == State::kLoaded || state == State::kApproaching;
   const std::string front = words + "; ";
   if (!is_ahead || approach_.empty() || front.size() >= dds::kMaxText) return words;
-  const std::string both = front + telemetry::describe(way_, model_, dds::kMaxText - front.size());
+  const std::string both =
+      front + telemetry::describe(planned_approach_, model_, dds::kMaxText - front.size());
   return both.size() <= dds::kMaxText ? both : words;
 }
 

@@ -259,7 +259,7 @@ void TelemetryThread::report(const Event& event) {
     case EventCode::kEpochAdvanced:
       status_.blocks_done = 0;
       has_news_ = true;
-      if (way_.epoch != event.a) forget_approach();  // of a program that is void
+      if (planned_approach_.epoch != event.a) forget_approach();  // of a program that is void
       break;
     case EventCode::kAccepted:
     case EventCode::kRefused:

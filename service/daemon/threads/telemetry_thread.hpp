@@ -148,7 +148,7 @@ class TelemetryThread {
   std::string alarm_message_;    ///< of the newest alarm
   std::string notice_;           ///< newest that is for the operator, until the machine goes on
   std::string approach_;         ///< how the program that was planned last is approached
-  Approach way_;                 ///< the same
+  Approach planned_approach_;    ///< the same
   bool is_approach_new_ = false;
   std::string approach_message_;  ///< the message that reported it last
 };

@@ -28,7 +28,7 @@ class ReportWire {
       waiting_ = report;
       return;
     }
-    if (is_well() && under_way_.empty() && !direct_) {
+    if (is_well() && in_flight_.empty() && !direct_) {
       direct_ = report;
       return;
     }
@@ -41,14 +41,14 @@ class ReportWire {
       report = *std::exchange(direct_, std::nullopt);
       return true;
     }
-    if (under_way_.empty() || under_way_.front().due > now_) return false;
-    report = under_way_.front().report;
-    under_way_.pop_front();
+    if (in_flight_.empty() || in_flight_.front().due > now_) return false;
+    report = in_flight_.front().report;
+    in_flight_.pop_front();
     return true;
   }
 
  private:
-  struct UnderWay {
+  struct InFlight {
     std::int64_t due;
     dds::DriveFeedback report;
   };
@@ -57,7 +57,7 @@ class ReportWire {
   }
   void set_out(const dds::DriveFeedback& report) {
     for (int n = 0; n < (is_doubled_ ? 2 : 1); ++n) {
-      under_way_.push_back({now_ + delay_periods_, report});
+      in_flight_.push_back({now_ + delay_periods_, report});
     }
   }
 
@@ -65,7 +65,7 @@ class ReportWire {
   bool is_doubled_ = false, is_swapped_ = false;
   std::optional<dds::DriveFeedback> waiting_;  ///< for the one behind it
   std::optional<dds::DriveFeedback> direct_;   ///< arrives at once
-  std::deque<UnderWay> under_way_;
+  std::deque<InFlight> in_flight_;
 };
 
 }  // namespace meridian::drives

@@ -19,7 +19,7 @@ class SetpointFaults {
   [[nodiscard]] bool lets_pass(const dds::SetpointSample& setpoint) {
     if (deaf_periods_ > 0) return false;
     if (delay_periods_ == 0) return true;
-    under_way_.push_back({now_ + delay_periods_, setpoint});
+    in_flight_.push_back({now_ + delay_periods_, setpoint});
     return false;
   }
   /// Periods go by.
@@ -29,19 +29,19 @@ class SetpointFaults {
   }
   /// A delayed setpoint that arrives now; call until there is none.
   [[nodiscard]] bool arrives(dds::SetpointSample& setpoint) {
-    if (under_way_.empty() || under_way_.front().due > now_) return false;
-    setpoint = under_way_.front().setpoint;
-    under_way_.pop_front();
+    if (in_flight_.empty() || in_flight_.front().due > now_) return false;
+    setpoint = in_flight_.front().setpoint;
+    in_flight_.pop_front();
     return true;
   }
 
  private:
-  struct UnderWay {
+  struct InFlight {
     std::int64_t due;
     dds::SetpointSample setpoint;
   };
   std::int64_t now_ = 0, deaf_periods_ = 0, delay_periods_ = 0;
-  std::deque<UnderWay> under_way_;
+  std::deque<InFlight> in_flight_;
 };
 
 }  // namespace meridian::drives

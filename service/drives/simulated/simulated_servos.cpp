@@ -9,9 +9,9 @@ constexpr double kSearchShare = 0.1;  ///< of the velocity limit
 
 /// How far from home a drive without a reference stands, inside travel.
 [[nodiscard]] double away_from_home(const JointSpec& spec) noexcept {
-  const double way = spec.is_rotary ? 0.05 : 5.0;
-  const bool has_room = spec.is_endless || spec.home + way <= spec.limits.travel_max;
-  return has_room ? way : -way;
+  const double offset = spec.is_rotary ? 0.05 : 5.0;
+  const bool has_room = spec.is_endless || spec.home + offset <= spec.limits.travel_max;
+  return has_room ? offset : -offset;
 }
 
 }  // namespace

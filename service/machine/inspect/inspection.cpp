@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/kinematics/jacobian.hpp"
 #include "service/machine/inspect/inspection.hpp"
 
 #include <Eigen/Geometry>
@@ -8,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "meridian/kinematics/jacobian.hpp"
 #include "meridian/units.hpp"
 
 namespace meridian::inspect {
@@ -67,10 +67,10 @@ void look_at_tilt(const MachineModel& model, Inspection& out) {
 }
 
 /// How far the tip goes from W's origin along one direction with the tool along z.
-double straight_way(const MachineModel& model, const Vector3& direction) {
+double straight_reach(const MachineModel& model, const Vector3& direction) {
   constexpr double kStep_mm = 10, kMax_mm = 20'000;
-  const auto reaches = [&](double way) {
-    return is_in_reach(model, {way * direction, Vector3::UnitZ()});
+  const auto reaches = [&](double distance) {
+    return is_in_reach(model, {distance * direction, Vector3::UnitZ()});
   };
   double good = 0;
   while (good < kMax_mm && reaches(good + kStep_mm)) good += kStep_mm;
@@ -85,7 +85,7 @@ double straight_way(const MachineModel& model, const Vector3& direction) {
 void look_at_space(const MachineModel& model, Inspection& out) {
   for (int i = 0; i < 3; ++i) {
     const Vector3 direction = Vector3::Unit(i);
-    out.straight[at(i)] = {-straight_way(model, -direction), straight_way(model, direction)};
+    out.straight[at(i)] = {-straight_reach(model, -direction), straight_reach(model, direction)};
   }
 }
 

@@ -13,7 +13,7 @@
 namespace meridian::inspect {
 namespace {
 
-constexpr double kWay_mm = 10, kTurn_deg = 5;
+constexpr double kStroke_mm = 10, kTurn_deg = 5;
 constexpr int kSteps = 20;  // a quarter of a degree each
 
 using Put = std::function<void(const ClBlock&)>;
@@ -34,12 +34,12 @@ void run(const MachineModel& model, const Put& put,
   for (int joint = 0; joint < model.joint_count; ++joint) {
     const auto i = static_cast<std::size_t>(joint);
     const JointSpec& spec = model.joints[i];
-    double way = spec.is_rotary ? units::rad_from_deg(kTurn_deg) : kWay_mm;
-    if (!is_inside_travel(spec, place[i] + way, 0)) way = -way;
-    announce(spec, way);
+    double stroke = spec.is_rotary ? units::rad_from_deg(kTurn_deg) : kStroke_mm;
+    if (!is_inside_travel(spec, place[i] + stroke, 0)) stroke = -stroke;
+    announce(spec, stroke);
     for (int step = 1; step <= 2 * kSteps; ++step) {
       JointVector q = place;
-      q[i] += way * (step <= kSteps ? step : 2 * kSteps - step) / kSteps;
+      q[i] += stroke * (step <= kSteps ? step : 2 * kSteps - step) / kSteps;
       put(rapid_to(model, q));
     }
   }
@@ -63,8 +63,8 @@ void write_joint_pattern(const MachineModel& model, std::ostream& out) {
   writer.note("Each joint alone, forwards and back, of machine " + model.name);
   run(
       model, [&writer](const ClBlock& block) { writer.write(block); },
-      [&writer](const JointSpec& joint, double way) {
-        const double shown = joint.is_rotary ? units::deg_from_rad(way) : way;
+      [&writer](const JointSpec& joint, double stroke) {
+        const double shown = joint.is_rotary ? units::deg_from_rad(stroke) : stroke;
         writer.note(joint.name + " by " + std::to_string(shown) +
                     (joint.is_rotary ? " deg" : " mm"));
       });

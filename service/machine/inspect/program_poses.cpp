@@ -51,12 +51,12 @@ Expected<std::vector<ProgramPose>, cl::ClError> read_poses(cl::ClReader& reader,
     }
     if (!is_motion(block.kind)) continue;
     const ToolPose to = end_of(block);
-    const bool has_way = from && from->axis.dot(to.axis) > -0.999;
-    const int count = has_way ? poses_for(block, *from, to) : 1;
-    const PathPiece piece = !has_way       ? PathPiece{}
+    const bool has_path = from && from->axis.dot(to.axis) > -0.999;
+    const int count = has_path ? poses_for(block, *from, to) : 1;
+    const PathPiece piece = !has_path      ? PathPiece{}
                             : block.is_arc ? make_arc(*from, to, block)
                                            : make_line(*from, to);
-    const double length_mm = has_way ? piece.length : from ? (to.tip - from->tip).norm() : 0;
+    const double length_mm = has_path ? piece.length : from ? (to.tip - from->tip).norm() : 0;
     const double feed_time_s = feed_time_of(block, length_mm) / count;
     for (int n = 1; n < count; ++n) {
       const auto at = pose_at(piece, piece.length * n / count);

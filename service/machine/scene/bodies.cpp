@@ -29,10 +29,10 @@ class Builder {
   /// A body between two points of M that hangs in the frame that stands at `anchor`.
   void beam(const std::string& frame, const Vector3& anchor, const Vector3& from, const Vector3& to,
             double width, Part part) {
-    const Vector3 way = to - from;
-    if (way.norm() < 0.05 * size_) return;
-    bodies.push_back({frame, Shape::kCylinder, part, (from + to) / 2 - anchor, way.normalized(),
-                      way.norm(), width * size_});
+    const Vector3 along = to - from;
+    if (along.norm() < 0.05 * size_) return;
+    bodies.push_back({frame, Shape::kCylinder, part, (from + to) / 2 - anchor, along.normalized(),
+                      along.norm(), width * size_});
   }
   /// The joint itself, in its own frame.
   void joint(const std::string& frame, const Screw& screw) {

@@ -54,8 +54,8 @@ cl::Outcome centre_by_words(const State& s, const Line& line, WrittenArc& arc) {
     }
     has_centre = true;
     const auto at = static_cast<Eigen::Index>(k);
-    const bool is_absolute =
-        word->way == Word::Way::kAbsolute || s.modes.centre == Distance::kAbsolute;
+    const bool is_absolute = word->distance_mode == Word::DistanceMode::kAbsolute ||
+                             s.modes.centre == Distance::kAbsolute;
     arc.centre[at] = is_absolute ? word->number : arc.begin[at] + word->number;
   }
   if (!has_centre)

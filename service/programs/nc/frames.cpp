@@ -77,9 +77,9 @@ cl::Frame turned_about(std::size_t axis, double deg) {
   return out;
 }
 
-cl::Frame moved_by(const Vector3& way) {
+cl::Frame moved_by(const Vector3& offset) {
   cl::Frame out;
-  out.origin = way;
+  out.origin = offset;
   return out;
 }
 

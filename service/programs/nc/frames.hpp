@@ -35,7 +35,7 @@ struct ProgramFrames {
 
 /// A turn by `deg` about x, y or z (0, 1, 2).
 [[nodiscard]] cl::Frame turned_about(std::size_t axis, double deg);
-[[nodiscard]] cl::Frame moved_by(const Vector3& way);
+[[nodiscard]] cl::Frame moved_by(const Vector3& offset);
 
 /// One turn after the other, each about an axis as the ones before have left it.
 struct Turn {

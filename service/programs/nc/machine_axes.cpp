@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/kinematics/jacobian.hpp"
 #include "service/programs/nc/machine_axes.hpp"
 
 #include <algorithm>
@@ -7,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "meridian/kinematics/jacobian.hpp"
 #include "meridian/units.hpp"
 #include "service/programs/nc/remedy.hpp"
 #include "service/programs/post/tip_frame.hpp"
@@ -106,9 +106,9 @@ Expected<double, cl::Refusal> MachineAxes::length_mm(std::optional<std::uint32_t
                 "give --tools FILE or --unknown-tool-length MM");
 }
 
-Expected<double, cl::Refusal> MachineAxes::way_out(const ToolPose& from,
-                                                   const std::vector<RotaryAt>& rotary,
-                                                   std::optional<std::uint32_t> tool) const {
+Expected<double, cl::Refusal> MachineAxes::retract_travel(const ToolPose& from,
+                                                          const std::vector<RotaryAt>& rotary,
+                                                          std::optional<std::uint32_t> tool) const {
   const auto length = length_mm(tool);
   if (!length) return tl::make_unexpected(length.error());
   constexpr double kSameTurn_rad = 1e-9, kAtRest = 1e-9;
@@ -116,7 +116,7 @@ Expected<double, cl::Refusal> MachineAxes::way_out(const ToolPose& from,
   const auto end = begin ? solve_near({from.tip + from.axis, from.axis}, *length, *begin)
                          : std::optional<JointVector>();
   if (!end) return refuse(kBeyondReach, kPlaceOfPart);
-  double way = std::numeric_limits<double>::infinity();
+  double travel = std::numeric_limits<double>::infinity();
   for (int i = 0; i < model_.joint_count; ++i) {
     const double step = (*end)[i] - (*begin)[i];
     if (words_->is_rotary(i)) {
@@ -126,11 +126,12 @@ Expected<double, cl::Refusal> MachineAxes::way_out(const ToolPose& from,
     }
     if (std::abs(step) < kAtRest || model_.joints[i].is_endless) continue;
     const JointLimits& limits = model_.joints[i].limits;
-    way = std::min(way, ((step > 0 ? limits.travel_max : limits.travel_min) - (*begin)[i]) / step);
+    travel =
+        std::min(travel, ((step > 0 ? limits.travel_max : limits.travel_min) - (*begin)[i]) / step);
   }
-  if (!std::isfinite(way))
+  if (!std::isfinite(travel))
     return refuse("no travel of machine " + model_.name + " ends there", kMovesByCam);
-  return std::max(way, 0.0);
+  return std::max(travel, 0.0);
 }
 
 Expected<MachineAxes::Reached, cl::Refusal> MachineAxes::move(

@@ -63,9 +63,9 @@ class MachineAxes {
 
   /// How far the tool can leave `from` along its axis until a linear joint is at the end of its
   /// travel, mm. Refused where rotary joints would turn on the way.
-  [[nodiscard]] Expected<double, cl::Refusal> way_out(const ToolPose& from,
-                                                      const std::vector<RotaryAt>& rotary,
-                                                      std::optional<std::uint32_t> tool) const;
+  [[nodiscard]] Expected<double, cl::Refusal> retract_travel(
+      const ToolPose& from, const std::vector<RotaryAt>& rotary,
+      std::optional<std::uint32_t> tool) const;
 
  private:
   [[nodiscard]] Expected<double, cl::Refusal> length_mm(std::optional<std::uint32_t> tool) const;

@@ -12,7 +12,7 @@ namespace meridian::nc {
 
 /// An address with its number, G43.4, C1=90.
 struct Word {
-  enum class Way : std::uint8_t {
+  enum class DistanceMode : std::uint8_t {
     kModal,
     kAbsolute,     ///< AC of Siemens
     kIncremental,  ///< IC of Siemens, IX of Klartext
@@ -25,7 +25,7 @@ struct Word {
   double number = 0;
   bool has_point = false;
   std::uint8_t decimals = 0;
-  Way way = Way::kModal;
+  DistanceMode distance_mode = DistanceMode::kModal;
 
   [[nodiscard]] bool is(char letter) const noexcept {
     return address.size() == 1 && address.front() == letter;

@@ -45,8 +45,9 @@ std::optional<double> rotary_of(const Place& place, std::string_view address) {
 }
 
 bool is_relative(const State& s, const Word& word) {
-  return word.way == Word::Way::kModal ? s.modes.is_incremental()
-                                       : word.way == Word::Way::kIncremental;
+  return word.distance_mode == Word::DistanceMode::kModal
+             ? s.modes.is_incremental()
+             : word.distance_mode == Word::DistanceMode::kIncremental;
 }
 
 cl::Outcome take_tip(State& s, const Line& line, Target& to) {

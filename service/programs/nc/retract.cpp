@@ -24,7 +24,7 @@ Expected<double, cl::Refusal> length_of(State& s, const Line& line, std::optiona
   s.cl.remarks.warn("M140", line.number, [] {
     return std::string("M140 MB MAX: taken along the tool axis to the end of travel");
   });
-  return s.axes->way_out(s.in_w, s.place.rotary, s.cl.tool);
+  return s.axes->retract_travel(s.in_w, s.place.rotary, s.cl.tool);
 }
 
 }  // namespace

@@ -122,19 +122,19 @@ Expected<std::optional<cl::Frame>, cl::Refusal> by_three_points(State& s, const 
 /// Q1 is the origin and the direction of x, Q2 that of z.
 Expected<std::optional<cl::Frame>, cl::Refusal> by_two_vectors(State& s, const Line& line, int q) {
   PlaneInParts& parts = s.frames.parts;
-  const Vector3 way = vector_of(line);
-  if (!(way.norm() > 1e-6)) {
+  const Vector3 direction = vector_of(line);
+  if (!(direction.norm() > 1e-6)) {
     return refuse("G68.2 P3: I J K is no direction", {}, "G68.2 P3");
   }
   if (q == 1) {
     parts.origin = point_of(line);
-    parts.x_axis = way.normalized();
+    parts.x_axis = direction.normalized();
     return std::nullopt;
   }
-  if (!are_square(parts.x_axis, way)) {
+  if (!are_square(parts.x_axis, direction)) {
     return refuse("G68.2 P3: its two vectors do not stand square on each other", {}, "G68.2 P3");
   }
-  return frame_along(parts.origin, parts.x_axis, way);
+  return frame_along(parts.origin, parts.x_axis, direction);
 }
 
 cl::Outcome define_part(State& s, const Line& line, int form) {

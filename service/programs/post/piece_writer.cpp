@@ -59,22 +59,23 @@ void PieceWriter::write_joint_move(const PathPiece& piece) {
   }
 }
 
-Refusal PieceWriter::write(const WayPiece& way_piece, const ClBlock& block, double way) {
-  const PathPiece& piece = way_piece.piece;
+Refusal PieceWriter::write(const PlannedPiece& planned_piece, const ClBlock& block,
+                           double block_length) {
+  const PathPiece& piece = planned_piece.piece;
   if (piece.kind == PathKind::kTurn && program_.motion() == BlockMotion::kTipAndAxis) {
     skip(piece);
     return {};
   }
-  const bool is_rapid = way_piece.feed_mm_per_s == 0;
+  const bool is_rapid = planned_piece.feed_mm_per_s == 0;
   if (piece.kind == PathKind::kJoint) {
     write_joint_move(piece);
     return {};
   }
-  const double feed = is_rapid ? parts_.options.rapid_feed_mm_per_s : way_piece.feed_mm_per_s;
+  const double feed = is_rapid ? parts_.options.rapid_feed_mm_per_s : planned_piece.feed_mm_per_s;
   const double tip_mm = tip_length(piece);
   double piece_s = feed > 0 ? tip_mm / feed : 0;
-  if (block.feed_meaning == FeedMeaning::kInverseTime && way > 0 && is_of_block(piece)) {
-    piece_s = std::max(piece_s, way_length(piece) / way / block.feed);
+  if (block.feed_meaning == FeedMeaning::kInverseTime && block_length > 0 && is_of_block(piece)) {
+    piece_s = std::max(piece_s, path_length(piece) / block_length / block.feed);
   }
   const auto duration = [&](const BlockEnd& from, const BlockEnd& to) {
     return std::max(piece_s * (to.share - from.share), min_time(from.axes, to.axes));

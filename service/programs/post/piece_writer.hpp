@@ -25,7 +25,8 @@ class PieceWriter {
         cutter_(parts.model, parts.words, program.motion(), tolerance) {}
 
   /// `way` is the length of all pieces of the block, which shares of its time are measured by.
-  [[nodiscard]] Refusal write(const WayPiece& way_piece, const ClBlock& block, double way);
+  [[nodiscard]] Refusal write(const PlannedPiece& planned_piece, const ClBlock& block,
+                              double block_length);
 
   /// The controller finds the way over `piece` by itself.
   void skip(const PathPiece& piece) { (void)stand_at(piece.joints_end); }

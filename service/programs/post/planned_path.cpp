@@ -94,7 +94,7 @@ ClBlock PlannedPath::inside_travel(ClBlock block) const {
   return block;
 }
 
-Expected<std::vector<WayPiece>, PostError> PlannedPath::plan(const ClBlock& programmed) {
+Expected<std::vector<PlannedPiece>, PostError> PlannedPath::plan(const ClBlock& programmed) {
   const ClBlock block = inside_travel(programmed);
   const PlanResult result = planner_.plan(block, writer_);
   if (result.status != PlanStatus::kOk) {
@@ -108,7 +108,7 @@ Expected<std::vector<WayPiece>, PostError> PlannedPath::plan(const ClBlock& prog
             "control the tip would follow the turn; --dialect joints writes the "
             "rewind, or split the program ahead of this line"});
   }
-  std::vector<WayPiece> pieces;
+  std::vector<PlannedPiece> pieces;
   for (PathPiece piece; port_->paths.try_pop(piece);) {
     // Where azimuth leads, tip and axis take the same way at another pace: the plain piece.
     piece.is_azimuthal = false;
@@ -127,7 +127,7 @@ void PlannedPath::begin_again() {
   planner_.begin(JointVector(planner_.joints()), planner_.tool_length_mm(), ++epoch_);
 }
 
-double way_length(const PathPiece& piece) noexcept {
+double path_length(const PathPiece& piece) noexcept {
   if (piece.kind == PathKind::kTurn || piece.kind == PathKind::kJoint) return 0;
   return std::hypot(tip_length(piece), kAxisLength_mm_per_rad * piece.axis_turn);
 }

@@ -18,7 +18,7 @@
 namespace meridian::post {
 
 /// A stretch of one block's way. `piece` grows evenly with its share of the way; see plain().
-struct WayPiece {
+struct PlannedPiece {
   PathPiece piece;
   double feed_mm_per_s = 0;  ///< of the tip; 0: rapid
 };
@@ -32,7 +32,7 @@ class PlannedPath {
   PlannedPath(const MachineModel& model, ToolTable tools, BlockMotion motion);
 
   /// The pieces of `block` in order; empty where it does not move.
-  [[nodiscard]] Expected<std::vector<WayPiece>, PostError> plan(const ClBlock& programmed);
+  [[nodiscard]] Expected<std::vector<PlannedPiece>, PostError> plan(const ClBlock& programmed);
 
   /// The next motion block is approached anew: after a tool change nobody knows the way there.
   void begin_again();
@@ -53,7 +53,7 @@ class PlannedPath {
 
 /// Length of the way that `piece` stands for, whichever way its s runs: what shares of a block's
 /// time are measured by. 0 for turns on the pole and joint moves. Unit: mm.
-[[nodiscard]] double way_length(const PathPiece& piece) noexcept;
+[[nodiscard]] double path_length(const PathPiece& piece) noexcept;
 
 /// False for the ways to the first point and for rewinds, which no block of the CL file times.
 [[nodiscard]] constexpr bool is_of_block(const PathPiece& piece) noexcept {

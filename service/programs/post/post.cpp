@@ -73,7 +73,7 @@ class Post {
         program_(make_program(parts)),
         can_retract_(options_.retract || program_->motion() != BlockMotion::kDrives ||
                      parts.retract_sense != 0),
-        way_(model_, tools, program_->motion()),
+        passed_(model_, tools, program_->motion()),
         writer_(parts, tolerance_of(model_, options_), *program_),
         name_(parts.name) {}
 
@@ -137,8 +137,8 @@ class Post {
 
   [[nodiscard]] Refusal take_motion(const ClBlock& block) {
     ++motion_blocks_;
-    const JointVector before = way_.joints();
-    auto pieces = way_.plan(block);
+    const JointVector before = passed_.joints();
+    auto pieces = passed_.plan(block);
     if (!pieces) return pieces.error();
     if (block.kind == BlockKind::kCut && block.feed_meaning == FeedMeaning::kTip &&
         model_.max_feed_mm_per_s > 0 && block.feed > model_.max_feed_mm_per_s) {
@@ -151,10 +151,10 @@ class Post {
       }
       first = start(*pieces, before);
     }
-    double way = 0;
+    double block_length = 0;
     for (std::size_t n = first; n < pieces->size(); ++n) {
       const PathPiece& piece = (*pieces)[n].piece;
-      if (is_of_block(piece)) way += way_length(piece);
+      if (is_of_block(piece)) block_length += path_length(piece);
     }
     const bool is_whole = program_->motion() == BlockMotion::kTipAndAxis && !block.is_arc;
     for (std::size_t n = first; n < pieces->size(); ++n) {
@@ -165,20 +165,21 @@ class Post {
         writer_.skip(piece);
         continue;
       }
-      Refusal refusal = writer_.write((*pieces)[n], block, way);
+      Refusal refusal = writer_.write((*pieces)[n], block, block_length);
       if (refusal) return refusal;
     }
     return {};
   }
 
   /// The way to where the program begins. Returns the first piece that is still to be run.
-  [[nodiscard]] std::size_t start(const std::vector<WayPiece>& pieces, const JointVector& before) {
+  [[nodiscard]] std::size_t start(const std::vector<PlannedPiece>& pieces,
+                                  const JointVector& before) {
     needs_start_ = false;
     is_retracted_ = false;
     const auto to = [this](const JointVector& joints) {
       Target target;
       target.axes = writer_.stand_at(joints);
-      target.pose = in_program(model_, forward(model_, way_.tool_length_mm(), joints));
+      target.pose = in_program(model_, forward(model_, passed_.tool_length_mm(), joints));
       return target;
     };
     if (!can_retract_) {
@@ -231,11 +232,11 @@ class Post {
   }
 
   [[nodiscard]] Refusal take_tool(const ClBlock& block) {
-    const auto pieces = way_.plan(block);
+    const auto pieces = passed_.plan(block);
     if (!pieces) return pieces.error();
     retract();
     program_->change_tool(static_cast<int>(std::lround(block.value)));
-    way_.begin_again();
+    passed_.begin_again();
     needs_start_ = true;
     return {};
   }
@@ -244,7 +245,7 @@ class Post {
   const PostOptions& options_;
   std::unique_ptr<Program> program_;
   bool can_retract_;
-  PlannedPath way_;
+  PlannedPath passed_;
   PieceWriter writer_;
   std::string name_;
   bool needs_start_ = true, is_retracted_ = false, is_ended_ = false;

@@ -36,8 +36,8 @@ namespace {
   for (int joint = 0; joint < model.joint_count; ++joint) {
     const auto i = static_cast<std::size_t>(joint);
     const bool is_rotary = model.joints[i].is_rotary;
-    const double way = approach.to[i] - approach.from[i];
-    const double by = is_rotary ? units::deg_from_rad(way) : way;
+    const double distance = approach.to[i] - approach.from[i];
+    const double by = is_rotary ? units::deg_from_rad(distance) : distance;
     if (std::abs(by) < kShown) continue;
     const std::string own = is_rotary ? " deg" : " mm";
     if (!text.empty()) text += (own == unit ? "" : unit) + ", ";
@@ -334,8 +334,8 @@ std::string describe(const Approach& approach, const MachineModel& model, std::s
   const std::string head = fmt::format("approach to line {}: ", approach.line);
   const std::string joints = joints_moved(approach, model);
   if (joints.empty() && !approach.has_rest) return head + "none, the tool is there";
-  const auto lift = [](const char* way, double by_mm) {
-    return by_mm > 0 ? fmt::format("{} {:.4g} mm, ", way, by_mm) : "";
+  const auto lift = [](const char* direction, double by_mm) {
+    return by_mm > 0 ? fmt::format("{} {:.4g} mm, ", direction, by_mm) : "";
   };
   // Where tool and spindle act next nobody may think that the tool is farther off than it is.
   const std::string begin =
@@ -343,15 +343,15 @@ std::string describe(const Approach& approach, const MachineModel& model, std::s
           ? fmt::format("up {:.4g} of {:.4g} mm{}, actions, ", approach.retract, model.clearance_mm,
                         is_short_of_clearance(approach, model) ? " (NEAR THE PART)" : "")
           : "";
-  const std::string ways =
+  const std::string lifts =
       (approach.has_rest ? lift("up", approach.lift) : lift("up", approach.retract)) +
       (joints.empty() ? "" : "joints straight " + joints + ", ") + lift("down", approach.descent);
   const std::string trip = fmt::format("{:.4g} mm in {:.1f} s, branch {}", approach.length,
                                        approach.time, approach.branch);
   const std::string turned = winding(approach, model);
   const std::string front = head + begin;
-  if ((front + ways + trip + turned).size() <= room) return front + ways + trip + turned;
-  return (front + ways + trip).size() <= room ? front + ways + trip : front + trip;
+  if ((front + lifts + trip + turned).size() <= room) return front + lifts + trip + turned;
+  return (front + lifts + trip).size() <= room ? front + lifts + trip : front + trip;
 }
 
 bool is_short_of_clearance(const Approach& approach, const MachineModel& model) noexcept {

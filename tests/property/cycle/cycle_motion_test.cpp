@@ -38,7 +38,7 @@ TEST(CycleMotion, KeepsPathAndLimitsUnderRandomHoldsAndOverrides) {
     Draw draw(kSeed + static_cast<std::uint64_t>(n));
     ProgramRun run(draw.machine, draw.blocks, draw.start());
     if (!run.is_started()) continue;
-    const auto ways = test::programmed_paths(draw.blocks);
+    const auto paths = test::programmed_paths(draw.blocks);
     seconds += random_operator.operate(run, draw.random, kMaxSeconds);
     done += run.is_over();
     test::expect_within_limits(run.world, 0, false, worst);
@@ -46,7 +46,7 @@ TEST(CycleMotion, KeepsPathAndLimitsUnderRandomHoldsAndOverrides) {
     for (const CycleRecord& record : run.world.records) EXPECT_GE(record.rate, 0);
     test::for_each_cut(
         draw.machine, run.world.records, 0, 7, [&](const auto& record, const auto& pose) {
-          const test::Deviation off = test::match_pose(ways[record.sequence], pose);
+          const test::Deviation off = test::match_pose(paths[record.sequence], pose);
           worst_tip = std::max(worst_tip, off.tip_mm - kTrade_mm_per_rad * off.axis_rad);
           worst_axis = std::max(worst_axis, off.axis_rad);
         });
@@ -71,7 +71,7 @@ TEST(CycleMotion, FaultStopsKeepPathAndFaultLimitsAtAnyInstant) {
     Draw draw(kSeed + 2000 + static_cast<std::uint64_t>(n));
     ProgramRun run(draw.machine, draw.blocks, draw.start());
     if (!run.is_started()) continue;
-    const auto ways = test::programmed_paths(draw.blocks);
+    const auto paths = test::programmed_paths(draw.blocks);
     const double until = draw.random.uniform(0.05, 3);
     const bool is_held = draw.random.chance(0.3);
     if (!test::run_into_fault(run, until)) continue;
@@ -82,7 +82,7 @@ TEST(CycleMotion, FaultStopsKeepPathAndFaultLimitsAtAnyInstant) {
     test::expect_within_limits(run.world, first, true, worst);
     test::for_each_cut(
         draw.machine, run.world.records, first, 1, [&](const auto& record, const auto& pose) {
-          const test::Deviation off = test::match_pose(ways[record.sequence], pose);
+          const test::Deviation off = test::match_pose(paths[record.sequence], pose);
           worst_tip = std::max(worst_tip, off.tip_mm - kTrade_mm_per_rad * off.axis_rad);
         });
   }

@@ -97,7 +97,7 @@ TEST(FeedRaise, KeepsLimitsFeedTimesOverrideAndTolerancesOnHostilePrograms) {
     const double used = largest_feed(run, feed);
     EXPECT_LE(used, kRounding);
     worst_feed = std::max(worst_feed, used);
-    const auto ways = programmed_paths(blocks);
+    const auto paths = programmed_paths(blocks);
     double programmed = 0;
     Vector3 tip = Vector3::Zero();
     std::uint64_t cycle = 0;
@@ -109,7 +109,7 @@ TEST(FeedRaise, KeepsLimitsFeedTimesOverrideAndTolerancesOnHostilePrograms) {
       cycle = record.setpoint.cycle;
       if (cycle % 31 != 0) return;
       worst_off =
-          std::max(worst_off, distance_from(ways, record.sequence, pose, machine.tolerances.tip_mm,
+          std::max(worst_off, distance_from(paths, record.sequence, pose, machine.tolerances.tip_mm,
                                             machine.tolerances.axis_rad));
     });
     fastest = std::max(fastest, programmed);

@@ -118,15 +118,15 @@ TEST(JogMotion, FromOutsideOfTravelADistanceIsKeptExactly) {
   LimitShares worst;
   for (int n = 0; n < kHands; ++n) {
     SCOPED_TRACE(testing::Message() << "hand " << n);
-    const double way = n % 2 == 0 ? -1 : 1;  // inwards
+    const double sign = n % 2 == 0 ? -1 : 1;  // inwards
     JointVector at{};
-    at[1] = -way * (600 + uniform(0.1, 40));
+    at[1] = -sign * (600 + uniform(0.1, 40));
     Hand hand(test::lai_machine(), at);
     ASSERT_TRUE(hand.lay_on(1));
     hand.distance = uniform(0.01, 80);
-    hand.hold(1, way * uniform(20, 400), uniform(0.02, 0.2));
-    hand.hold(1, way * uniform(20, 400), 5);
-    EXPECT_NEAR(hand.world.state.joints[1], at[1] + way * hand.distance, 1e-9);
+    hand.hold(1, sign * uniform(20, 400), uniform(0.02, 0.2));
+    hand.hold(1, sign * uniform(20, 400), 5);
+    EXPECT_NEAR(hand.world.state.joints[1], at[1] + sign * hand.distance, 1e-9);
     EXPECT_EQ(hand.world.state.velocity[1], 0);
     EXPECT_EQ(hand.world.count(EventCode::kAlarm), 0);
     test::expect_within_limits(hand.world, 0, false, worst);

@@ -66,14 +66,14 @@ template <class Uniform>
 }
 
 /// How far tip and axis are off the straight way through `begin`.
-void expect_on_way(const test::CycleWorld& world, std::size_t first, const ToolPose& begin,
-                   const ToolPath& way) {
+void expect_on_path(const test::CycleWorld& world, std::size_t first, const ToolPose& begin,
+                    const ToolPath& tool_path) {
   double tip_off = 0, axis_off = 0;
   for (std::size_t n = first; n < world.records.size(); n += 7) {
     const ToolPose pose =
         forward(world.machine, world.machine.tool_length_mm, world.records[n].joints);
-    const Vector3 moved = pose.tip - begin.tip, direction = to_vector(way.direction);
-    if (way.is_tilt) {
+    const Vector3 moved = pose.tip - begin.tip, direction = to_vector(tool_path.direction);
+    if (tool_path.is_tilt) {
       tip_off = std::max(tip_off, moved.norm());
       const Vector3 normal = begin.axis.cross(direction);
       axis_off = std::max(axis_off, std::abs(pose.axis.dot(normal)));
@@ -106,7 +106,7 @@ TEST(JogTool, KeepsLimitsAndItsWayWhereverTheToolStands) {
     for (int k = 0; k < 6; ++k) {
       hand.hold(axis, (is_tilt ? 1 : 100) * uniform(-2, 2), uniform(0.05, 1.0));
     }
-    const ToolPath way = hand.world.state.jogging.way;
+    const ToolPath tool_path = hand.world.state.jogging.tool_path;
     const std::size_t shown = is_tilt ? 4 : 0;
     const bool has_moved = std::abs(hand.world.state.joints[shown] - draw.at[shown]) > 1e-3;
     moved += has_moved;
@@ -122,7 +122,7 @@ TEST(JogTool, KeepsLimitsAndItsWayWhereverTheToolStands) {
       test::expect_within_limits(hand.world, fault, true, worst_fault);
     }
     EXPECT_EQ(hand.world.count(EventCode::kAlarm), n % 2);
-    expect_on_way(hand.world, first, begin, way);
+    expect_on_path(hand.world, first, begin, tool_path);
   }
   std::printf(
       "seed %lu: %d of %d holds moved the tool, %d tilted it; worst v %.4f a %.4f j %.4f, in "

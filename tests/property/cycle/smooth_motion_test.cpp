@@ -31,10 +31,10 @@ std::vector<ClBlock> hostile(std::uint32_t seed, int sections = 6) {
 /// that moves.
 double largest_distance(const MachineModel& machine, const std::vector<ClBlock>& blocks,
                         const std::vector<CycleRecord>& records, std::size_t first = 0) {
-  const auto ways = test::programmed_paths(blocks);
+  const auto paths = test::programmed_paths(blocks);
   double largest = 0;
   test::for_each_cut(machine, records, first, 11, [&](const auto& record, const auto& pose) {
-    const double off = test::distance_from(ways, record.sequence, pose, machine.tolerances.tip_mm,
+    const double off = test::distance_from(paths, record.sequence, pose, machine.tolerances.tip_mm,
                                            machine.tolerances.axis_rad);
     largest = std::max(largest, off);
   });

@@ -116,7 +116,7 @@ struct PathShares {
 PathShares check_path(const MachineModel& machine, const std::vector<ClBlock>& blocks,
                       const SmoothRunning& run) {
   PathShares shares;
-  const auto ways = programmed_paths(blocks);
+  const auto paths = programmed_paths(blocks);
   const auto& records = run.world.records;
   shares.feed = largest_feed(run, std::min(blocks.front().feed, machine.max_feed_mm_per_s));
   std::uint64_t before = 0;
@@ -124,7 +124,7 @@ PathShares check_path(const MachineModel& machine, const std::vector<ClBlock>& b
   for_each_cut(machine, records, 0, 1, [&](const CycleRecord& record, const ToolPose& pose) {
     vertices.add(record.sequence, pose, record.setpoint.cycle == before + 1);
     before = record.setpoint.cycle;
-    const double off = distance_from(ways, record.sequence, pose, machine.tolerances.tip_mm,
+    const double off = distance_from(paths, record.sequence, pose, machine.tolerances.tip_mm,
                                      machine.tolerances.axis_rad, shares.off);
     shares.off = std::max(shares.off, off);
   });

@@ -168,8 +168,8 @@ TEST(BandStream, NamesBlocksAndBoundsFeedsOfAllThatASpanTouches) {
 TEST(BandStream, TakesTheTimesOfTheShortestBlocksInInverseTimeAndNoMore) {
   std::vector<ClBlock> blocks = {line_to(0, {0, 0, 0}), line_to(1, {20, 0, 0})};
   double x = 20, time_s = 0;
-  for (const double way : {1e-4, 0.003, 2e-5, 0.09}) {
-    x += way;
+  for (const double dx : {1e-4, 0.003, 2e-5, 0.09}) {
+    x += dx;
     ClBlock block = line_to(blocks.size(), {x, 0, 0});
     block.feed_meaning = FeedMeaning::kInverseTime;
     block.feed = 2;  // half a second each

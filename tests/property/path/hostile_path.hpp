@@ -29,7 +29,7 @@ class HostilePath {
 
   [[nodiscard]] std::vector<ClBlock> make(int sections) {
     for (int n = 0; n < sections; ++n) {
-      if (uniform(0, 1) < 0.5) way_ = direction();
+      if (uniform(0, 1) < 0.5) direction_ = direction();
       if (uniform(0, 1) < 0.3) feed_ = std::pow(10.0, uniform(0, 2));
       add_section(static_cast<int>(uniform(0, 11)));
     }
@@ -74,7 +74,7 @@ class HostilePath {
     const Vector3 back = tip_;
     switch (kind) {
       case 0:
-        return step(way_ * uniform(20, 100));
+        return step(direction_ * uniform(20, 100));
       case 1:
         for (int i = 0; i < 3; ++i) put();
         return;
@@ -82,7 +82,7 @@ class HostilePath {
         for (int i = 0; i < count; ++i) step(direction() * 1e-4);
         return;
       case 3:
-        step(way_ * std::pow(10.0, uniform(-3, 1)));
+        step(direction_ * std::pow(10.0, uniform(-3, 1)));
         return step(back - tip_);
       case 4:  // pure rotation
         azimuth_ += uniform(-0.7, 0.7);
@@ -91,30 +91,30 @@ class HostilePath {
       case 5:  // 12 deg in 0.1 mm
         for (int i = 0; i < 4; ++i) {
           azimuth_ += 0.2 / std::max(0.2, std::sin(tilt_));
-          step(way_ * 0.1);
+          step(direction_ * 0.1);
         }
         return;
       case 6:
         return add_arc(count * 4);
       case 7:
         for (int i = 0; i < count / 2; ++i) {
-          way_ = way_.cross(direction()).normalized();
-          step(way_ * std::pow(10.0, uniform(-2, 1)));
+          direction_ = direction_.cross(direction()).normalized();
+          step(direction_ * std::pow(10.0, uniform(-2, 1)));
         }
         return;
       case 8:
         for (int i = 0; i < count; ++i) {
           azimuth_ += (i % 2 == 0 ? 1 : -1) * uniform(0.002, 0.05);
-          step(way_ * uniform(0.01, 1));
+          step(direction_ * uniform(0.01, 1));
         }
         return;
       case 9:
-        step(way_ * uniform(1e-7, 0.01));
-        return step(way_ * uniform(10, 80));
+        step(direction_ * uniform(1e-7, 0.01));
+        return step(direction_ * uniform(10, 80));
       default:
         for (int i = 0; i < count; ++i) {
           tilt_by(uniform(-0.005, 0.005));
-          step(way_ * uniform(0.05, 1.5) + direction() * 0.002);
+          step(direction_ * uniform(0.05, 1.5) + direction() * 0.002);
         }
     }
   }
@@ -122,11 +122,12 @@ class HostilePath {
   void add_arc(int count) {
     const double radius = uniform(0.5, 20), turn = uniform(0.01, 0.4) / radius;
     const double noise = uniform(0, 1) < 0.5 ? 0 : 1e-3;
-    const Vector3 across = way_.unitOrthogonal(), centre = tip_ + radius * across;
+    const Vector3 across = direction_.unitOrthogonal(), centre = tip_ + radius * across;
     for (int i = 1; i < count; ++i) {
       azimuth_ += 0.002;
       const double a = turn * i;
-      tip_ = centre + radius * (std::sin(a) * way_ - std::cos(a) * across) + noise * direction();
+      tip_ =
+          centre + radius * (std::sin(a) * direction_ - std::cos(a) * across) + noise * direction();
       put();
     }
   }
@@ -134,7 +135,7 @@ class HostilePath {
   std::mt19937 engine_;
   double low_, high_;
   double tilt_ = 0, azimuth_ = 0, feed_ = 50;
-  Vector3 tip_, way_ = Vector3::UnitX();
+  Vector3 tip_, direction_ = Vector3::UnitX();
   std::vector<ClBlock> blocks_;
 };
 

@@ -143,12 +143,12 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
   Counts counts;
 
   void check_feed(const ReadBack& read, const test::NcMove& move, const test::NcMove& before,
-                  const test::ClPath& way) {
+                  const test::ClPath& path) {
     if (move.is_rapid) return;
     const double max = model.max_feed_mm_per_s;
-    const double feed = way.block.feed_meaning == FeedMeaning::kTip
-                            ? std::min(way.block.feed, max)
-                            : std::min(way.length() * way.block.feed, max);
+    const double feed = path.block.feed_meaning == FeedMeaning::kTip
+                            ? std::min(path.block.feed, max)
+                            : std::min(path.length() * path.block.feed, max);
     const double length = (read.end_of(move).tip - read.end_of(before).tip).norm();
     constexpr double kDigits_mm = 5e-3;  // rounded words at both ends
     if (read.options.dialect != post::Dialect::kJoints) {
@@ -163,7 +163,7 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
     const double by_joints = min_time(model, read.drives(before), read.drives(move));
     EXPECT_GE(seconds, by_joints * (1 - 1e-6)) << "a joint is too fast, NC line " << move.line;
     EXPECT_LE(length, feed * seconds * (1 + 1e-9) + kDigits_mm) << "NC line " << move.line;
-    if (way.block.is_arc || way.block.feed_meaning != FeedMeaning::kTip) return;
+    if (path.block.is_arc || path.block.feed_meaning != FeedMeaning::kTip) return;
     if (seconds > 1.01 * by_joints + 1e-3 && length > 0.1) {
       EXPECT_NEAR(length / seconds, feed, feed * (6e-4 + 2 * kDigits_mm / length))
           << "NC line " << move.line;
@@ -173,12 +173,12 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
 
   /// Largest deviation from `way` of the motion between two blocks, in tolerances.
   static double worst_between(const ReadBack& read, const test::NcMove& from,
-                              const test::NcMove& to, const test::ClPath& way,
+                              const test::NcMove& to, const test::ClPath& path,
                               const post::PostOptions& options) {
     double worst = 0;
     for (int k = 0; k <= kSamples; ++k) {
       const ToolPose pose = read.between(from, to, static_cast<double>(k) / kSamples);
-      worst = std::max(worst, test::deviation(way, pose, *options.chord_mm, *options.axis_rad));
+      worst = std::max(worst, test::deviation(path, pose, *options.chord_mm, *options.axis_rad));
     }
     return worst;
   }
@@ -187,8 +187,8 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
              const post::PostOptions& options) {
     const ReadBack read{model, *post::AxisWords::of(model), test::read_nc(nc_text), options};
     const std::vector<ClBlock> blocks = blocks_of(cl_text);
-    const auto ways = test::ways_of(blocks);
-    ASSERT_GT(ways.size(), 0U);
+    const auto paths = test::paths_of(blocks);
+    ASSERT_GT(paths.size(), 0U);
     const ToolPose first{to_vector(blocks[0].tip_mm), to_vector(blocks[0].axis).normalized()};
     const auto& moves = read.nc.moves;
     const bool has_joints = options.dialect == post::Dialect::kJoints;
@@ -201,22 +201,22 @@ class PostRoundTrip : public testing::TestWithParam<std::string> {
     std::size_t at = 0;  // way in force
     std::size_t before = n;
     for (++n; n < moves.size(); ++n) {
-      while (at < ways.size() && ways[at].block.line != moves[n].cl_line) {
-        ASSERT_TRUE(is_at(read.end_of(moves[before]), ways[at].end))
-            << "no block ends on CL line " << ways[at].block.line;
+      while (at < paths.size() && paths[at].block.line != moves[n].cl_line) {
+        ASSERT_TRUE(is_at(read.end_of(moves[before]), paths[at].end))
+            << "no block ends on CL line " << paths[at].block.line;
         ++at;
       }
-      ASSERT_LT(at, ways.size()) << "no such CL line, NC line " << moves[n].line;
-      const double worst = worst_between(read, moves[before], moves[n], ways[at], options);
+      ASSERT_LT(at, paths.size()) << "no such CL line, NC line " << moves[n].line;
+      const double worst = worst_between(read, moves[before], moves[n], paths[at], options);
       ASSERT_LE(worst, 1 + kRounding)
-          << "NC line " << moves[n].line << ", CL line " << ways[at].block.line;
+          << "NC line " << moves[n].line << ", CL line " << paths[at].block.line;
       counts.worst = std::max(counts.worst, worst);
-      check_feed(read, moves[n], moves[before], ways[at]);
+      check_feed(read, moves[n], moves[before], paths[at]);
       if (is_at(read.end_of(moves[before]), read.end_of(moves[n]))) ++counts.turns;
       before = n;
     }
-    while (at < ways.size() && is_at(read.end_of(moves[before]), ways[at].end)) ++at;
-    ASSERT_EQ(at, ways.size()) << "CL points are missing";
+    while (at < paths.size() && is_at(read.end_of(moves[before]), paths[at].end)) ++at;
+    ASSERT_EQ(at, paths.size()) << "CL points are missing";
     counts.nc_blocks += static_cast<int>(moves.size());
   }
 

@@ -34,16 +34,16 @@ class Channel {
     const int copies = draw() < weather_.twice ? 2 : 1;
     for (int i = 0; i < copies; ++i) {
       const int delay = std::uniform_int_distribution(0, weather_.max_delay_ms)(engine_);
-      under_way_.push_back({now_ns + delay * kMillisecond, message});
+      in_flight_.push_back({now_ns + delay * kMillisecond, message});
     }
   }
   [[nodiscard]] std::vector<Message> arrived(std::int64_t now_ns) {
     std::vector<Message> messages;
     const auto later =
-        std::stable_partition(under_way_.begin(), under_way_.end(),
+        std::stable_partition(in_flight_.begin(), in_flight_.end(),
                               [&](const Entry& entry) { return entry.due_ns > now_ns; });
-    for (auto it = later; it != under_way_.end(); ++it) messages.push_back(it->message);
-    under_way_.erase(later, under_way_.end());
+    for (auto it = later; it != in_flight_.end(); ++it) messages.push_back(it->message);
+    in_flight_.erase(later, in_flight_.end());
     if (weather_.max_delay_ms > 0) std::shuffle(messages.begin(), messages.end(), engine_);
     return messages;
   }
@@ -56,7 +56,7 @@ class Channel {
   };
   std::mt19937_64& engine_;
   Weather weather_;
-  std::vector<Entry> under_way_;
+  std::vector<Entry> in_flight_;
 };
 
 /// The queue behind the intake: checks that it gets the program in order, every block once.

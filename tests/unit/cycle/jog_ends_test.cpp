@@ -61,9 +61,9 @@ struct ToolHand {
     begin = pose();
   }
   void expect_on_line(const ToolPose& is) const {
-    const ToolPath& way = hand.world.state.jogging.way;
-    const Vector3 direction = to_vector(way.direction), moved = is.tip - begin.tip;
-    if (way.is_tilt) {
+    const ToolPath& tool_path = hand.world.state.jogging.tool_path;
+    const Vector3 direction = to_vector(tool_path.direction), moved = is.tip - begin.tip;
+    if (tool_path.is_tilt) {
       EXPECT_LE(moved.norm(), kOnLine);
       EXPECT_LE(std::abs(is.axis.dot(begin.axis.cross(direction))), kOnAxis);
     } else {
@@ -147,12 +147,12 @@ TEST(JogEnds, MovesTheToolThatStandsOnThePole) {
 /// In the plane that the table stands in the tool leaves the pole and passes it; in another plane
 /// it stands until the table is turned.
 TEST(JogEnds, TiltsTheToolOffThePoleAndThroughItInThePlaneOfTheTable) {
-  int ways = 0;
+  int sides = 0;
   for (const int axis : {kTiltX, kTiltY}) {
     for (const double velocity : {-0.2, 0.2}) {
       ToolHand tool({30, -40, 50, 0, 0, 0});
       const double off = tool.hold(axis, velocity, 0.5);
-      ways += off > 0.05;
+      sides += off > 0.05;
       const double tilt = tool.hand.world.state.joints[4];
       tool.hold(axis, -velocity, 1.0);
       const bool is_through = tilt * tool.hand.world.state.joints[4] < 0;
@@ -160,7 +160,7 @@ TEST(JogEnds, TiltsTheToolOffThePoleAndThroughItInThePlaneOfTheTable) {
       EXPECT_EQ(tool.hand.world.state.joints[3], 0) << "C stands still";
     }
   }
-  EXPECT_EQ(ways, 2) << "both ways about one of the two axes";
+  EXPECT_EQ(sides, 2) << "both ways about one of the two axes";
 
   ToolHand askew({30, -40, 50, 0.7, 0, 0});
   EXPECT_EQ(askew.hold(kTiltX, 0.2, 0.5) + askew.hold(kTiltY, 0.2, 0.5), 0);

@@ -80,9 +80,9 @@ TEST(JogKeepOut, OfTheToolStopsShortOfABoxInItsWay) {
     EXPECT_EQ(hand->world.count(EventCode::kAlarm), 0);
   }
   EXPECT_GT(std::abs(open.world.state.joints[2] - at[2]), 1.5 * kAway_mm);
-  const double way = std::abs(boxed.world.state.joints[2] - at[2]);
-  EXPECT_LE(way, kAway_mm);
-  EXPECT_GT(way, 0.8 * kAway_mm);
+  const double distance = std::abs(boxed.world.state.joints[2] - at[2]);
+  EXPECT_LE(distance, kAway_mm);
+  EXPECT_GT(distance, 0.8 * kAway_mm);
 }
 
 }  // namespace

@@ -106,9 +106,9 @@ TEST(JogTipBox, OfTheToolStopsShortOfTheFaceByAStepOfItsSurveyAtMost) {
   Hand hand(machine_about(at, 50), at);
   ASSERT_TRUE(hand.lay_on(kMaxJoints + 2));
   hand.hold(kMaxJoints + 2, 300, 3);
-  const double way = std::abs(hand.world.state.joints[2] - at[2]);
-  EXPECT_LE(way, 50);
-  EXPECT_GT(way, 45);
+  const double distance = std::abs(hand.world.state.joints[2] - at[2]);
+  EXPECT_LE(distance, 50);
+  EXPECT_GT(distance, 45);
   EXPECT_EQ(hand.world.count(EventCode::kAlarm), 0);
 }
 

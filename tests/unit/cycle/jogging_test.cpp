@@ -24,9 +24,9 @@ TEST(Jogging, FollowsTheHeldVelocityAndComesToReadyWhereNobodyHoldsIt) {
   EXPECT_EQ(hand.world.now(), State::kJogging);
   const double let_go = hand.world.state.joints[0];
   ASSERT_TRUE(hand.world.run_until(State::kReady, 1));
-  const double way = hand.world.state.joints[0] - let_go;
-  EXPECT_GT(way, 40 * kDeadMan_s) << "the dead man's time goes by first";
-  EXPECT_LT(way, 40 * (kDeadMan_s + 0.1)) << "then it brakes at once";
+  const double travelled = hand.world.state.joints[0] - let_go;
+  EXPECT_GT(travelled, 40 * kDeadMan_s) << "the dead man's time goes by first";
+  EXPECT_LT(travelled, 40 * (kDeadMan_s + 0.1)) << "then it brakes at once";
   EXPECT_EQ(hand.world.state.velocity, JointVector{});
   EXPECT_EQ(hand.world.state.epoch, 1) << "a jog that ends by itself voids nothing";
 }
@@ -63,8 +63,8 @@ TEST(Jogging, OrdersThatAWireHeldBackKeepNothingMoving) {
     hand.age_s += 0.02;
     hand.hold(0, 40, 0.02);
   }
-  const double way = hand.world.state.joints[0] - let_go;
-  EXPECT_LT(way, 40 * (kDeadMan_s + 0.1)) << "as where nothing came any more";
+  const double travelled = hand.world.state.joints[0] - let_go;
+  EXPECT_LT(travelled, 40 * (kDeadMan_s + 0.1)) << "as where nothing came any more";
   EXPECT_EQ(hand.world.now(), State::kReady);
 }
 

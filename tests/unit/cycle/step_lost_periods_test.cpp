@@ -103,13 +103,13 @@ TEST(StepLostPeriods, AStopDoesNotBeginWhereDrivesReportedToBeBeforeTheStall) {
     p.world.are_drives_alive = true;
     EXPECT_EQ(p.world.now(), State::kFaultStop);
     EXPECT_EQ(p.world.state.alarm, Alarm::kPeriodsLost);
-    double way = 0;
+    double distance = 0;
     for (std::size_t i = 0; i < 5; ++i) {
       const double reach = p.machine.joints[i].limits.velocity * p.world.dt();
       EXPECT_NEAR(p.world.records.back().joints[i], at[i], reach) << i;
-      way = std::max(way, std::abs(at[i] - before[i]));
+      distance = std::max(distance, std::abs(at[i] - before[i]));
     }
-    EXPECT_GT(way, 3) << "it makes a difference";
+    EXPECT_GT(distance, 3) << "it makes a difference";
     ASSERT_TRUE(p.world.run_until(State::kFault, 2));
     EXPECT_EQ(p.world.count(EventCode::kAlarm), age_ns > 30'000'000 ? 2 : 1);
     for (std::size_t n = first; n < p.world.records.size(); ++n) {

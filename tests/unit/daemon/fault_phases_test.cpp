@@ -32,10 +32,10 @@ std::string outcome(const Phase& phase, const char* fault) {
   const std::size_t first = plant->world.records.size();
   plant->inject(fault);
   const bool is_fault = plant->until(State::kFault, 6);
-  if (phase.way == Way::kOnLine) {
+  if (phase.tip_at == TipAt::kOnLine) {
     EXPECT_LE(plant->deviation(first), 1e-9) << "mm off the path";
   }
-  if (phase.way != Way::kNone) {
+  if (phase.tip_at != TipAt::kNone) {
     EXPECT_LE(plant->acceleration(first), 1 + 1e-6);
   }
   EXPECT_NE(plant->world.now(), State::kFaultStop);

@@ -27,17 +27,17 @@ struct Wire {
     std::int64_t due = 0;
     LeaseCheck::Word word;
   };
-  std::deque<Late> under_way;
+  std::deque<Late> in_flight;
 
   void send(const LeaseCheck::Word& word, std::int64_t now, std::mt19937& engine) {
     std::int64_t due = now + std::uniform_int_distribution(min, max)(engine);
-    if (!under_way.empty()) due = std::max(due, under_way.back().due);
-    under_way.push_back({due, word});
+    if (!in_flight.empty()) due = std::max(due, in_flight.back().due);
+    in_flight.push_back({due, word});
   }
   [[nodiscard]] std::optional<LeaseCheck::Word> take(std::int64_t now) {
     std::optional<LeaseCheck::Word> newest;
-    for (; !under_way.empty() && under_way.front().due <= now; under_way.pop_front()) {
-      newest = under_way.front().word;
+    for (; !in_flight.empty() && in_flight.front().due <= now; in_flight.pop_front()) {
+      newest = in_flight.front().word;
     }
     return newest;
   }
@@ -126,7 +126,7 @@ class Rivals {
       if (to == place(from) || rivals[to].knows[place(from)] == is_there) continue;
       rivals[to].knows[place(from)] = is_there;
       Wire& wire = wires[place(from)][to];
-      wire.under_way.clear();
+      wire.in_flight.clear();
       if (is_there) {
         wire.send(from.said, now, engine);
       } else {

@@ -34,7 +34,7 @@ struct Claimant {
 };
 
 /// Who of two that both serve gives way to the other, 0: nobody in time.
-std::uint64_t who_gives_way(Claimant& one, Claimant& other, milliseconds patience) {
+std::uint64_t who_yields(Claimant& one, Claimant& other, milliseconds patience) {
   const auto end = LeaseClock::now() + patience;
   while (LeaseClock::now() < end) {
     for (Claimant* const claimant : {&one, &other}) {
@@ -53,7 +53,7 @@ TEST(Lease, OfTwoThatServeTheOneThatServesLongerKeepsTheMachineWhateverItsNumber
   std::this_thread::sleep_for(milliseconds(700));
   Claimant later(domain.id(), 1);
   later.lease.hold();  // it did not hear of the other in time
-  EXPECT_EQ(who_gives_way(older, later, milliseconds(10'000)), 1U);
+  EXPECT_EQ(who_yields(older, later, milliseconds(10'000)), 1U);
   EXPECT_FALSE(older.lease.find_keeper(true));
 }
 
@@ -62,7 +62,7 @@ TEST(Lease, OfTwoThatServeSinceTheSameTimeTheSmallerNumberKeepsTheMachine) {
   Claimant one(domain.id(), 1), other(domain.id(), 2);
   other.lease.hold();
   one.lease.hold();
-  EXPECT_EQ(who_gives_way(one, other, milliseconds(10'000)), 2U);
+  EXPECT_EQ(who_yields(one, other, milliseconds(10'000)), 2U);
   EXPECT_FALSE(one.lease.find_keeper(true));
 }
 

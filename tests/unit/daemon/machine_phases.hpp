@@ -10,12 +10,12 @@
 /// Every phase of the machine, for tables of what comes of a fault in each.
 namespace meridian::test {
 
-enum class Way { kOnLine, kElsewhere, kNone };  ///< where the tip is commanded to be
+enum class TipAt { kOnLine, kElsewhere, kNone };  ///< where the tip is commanded to be
 
 /// What the machine is doing when the fault comes.
 struct Phase {
   const char* name;
-  Way way;
+  TipAt tip_at;
   void (*begin)(Rehearsal&);
   bool is_unreferenced = false;
 };
@@ -65,50 +65,50 @@ inline void probe_and_run(Rehearsal& plant) {
 }
 
 inline const std::array<Phase, 26> kMachinePhases{{
-    {"Off", Way::kNone, [](Rehearsal& plant) { plant.cycle(); }},
-    {"Enabling", Way::kNone,
+    {"Off", TipAt::kNone, [](Rehearsal& plant) { plant.cycle(); }},
+    {"Enabling", TipAt::kNone,
      [](Rehearsal& plant) {
        plant.cycle();
        plant.say(Verb::kEnable);
      }},
-    {"Ready", Way::kOnLine, [](Rehearsal& plant) { EXPECT_TRUE(plant.enable()); }},
-    {"Loaded", Way::kOnLine,
+    {"Ready", TipAt::kOnLine, [](Rehearsal& plant) { EXPECT_TRUE(plant.enable()); }},
+    {"Loaded", TipAt::kOnLine,
      [](Rehearsal& plant) {
        EXPECT_TRUE(plant.enable());
        plant.plan.cut({60, 0, 0}, kRehearsalLimits);
        EXPECT_TRUE(plant.until(State::kLoaded, 1));
      }},
-    {"Approaching", Way::kOnLine,
+    {"Approaching", TipAt::kOnLine,
      [](Rehearsal& plant) {
        EXPECT_TRUE(plant.enable());
        plant.plan.cut({60, 0, 0}, kRehearsalLimits, MotionKind::kApproach);
        plant.run(0.3);
        EXPECT_EQ(plant.world.now(), State::kApproaching);
      }},
-    {"Running, speeding up", Way::kOnLine, [](Rehearsal& plant) { cut_and_run(plant, 0.05); }},
-    {"Running", Way::kOnLine, [](Rehearsal& plant) { cut_and_run(plant, 0.3); }},
-    {"Running, slowing down", Way::kOnLine, [](Rehearsal& plant) { cut_and_run(plant, 0.66); }},
-    {"Running at 30 %", Way::kOnLine,
+    {"Running, speeding up", TipAt::kOnLine, [](Rehearsal& plant) { cut_and_run(plant, 0.05); }},
+    {"Running", TipAt::kOnLine, [](Rehearsal& plant) { cut_and_run(plant, 0.3); }},
+    {"Running, slowing down", TipAt::kOnLine, [](Rehearsal& plant) { cut_and_run(plant, 0.66); }},
+    {"Running at 30 %", TipAt::kOnLine,
      [](Rehearsal& plant) {
        cut_and_run(plant, 0.2);
        plant.say(Verb::kFeedOverride, 0.3);
        plant.wait(0.3);
      }},
-    {"Running, in a dwell", Way::kOnLine,
+    {"Running, in a dwell", TipAt::kOnLine,
      [](Rehearsal& plant) { cut_to_barrier(plant, TimeKind::kDwell); }},
-    {"Running, at an action", Way::kOnLine,
+    {"Running, at an action", TipAt::kOnLine,
      [](Rehearsal& plant) { cut_to_barrier(plant, TimeKind::kAction); }},
-    {"Holding", Way::kOnLine,
+    {"Holding", TipAt::kOnLine,
      [](Rehearsal& plant) {
        hold(plant);
        plant.wait(0.02);
      }},
-    {"Held", Way::kOnLine,
+    {"Held", TipAt::kOnLine,
      [](Rehearsal& plant) {
        hold(plant);
        EXPECT_TRUE(plant.until(State::kHeld, 1));
      }},
-    {"Stepping", Way::kOnLine,
+    {"Stepping", TipAt::kOnLine,
      [](Rehearsal& plant) {
        EXPECT_TRUE(plant.enable());
        plant.say(Verb::kSingleBlock, 1);
@@ -117,53 +117,53 @@ inline const std::array<Phase, 26> kMachinePhases{{
        plant.run(0);
        EXPECT_TRUE(plant.until(State::kStepping, 1));
      }},
-    {"Running, resumed", Way::kOnLine,
+    {"Running, resumed", TipAt::kOnLine,
      [](Rehearsal& plant) {
        hold(plant);
        EXPECT_TRUE(plant.until(State::kHeld, 1));
        plant.say(Verb::kResume);
        plant.wait(0.05);
      }},
-    {"Starving", Way::kOnLine, starve},
-    {"Starved", Way::kOnLine,
+    {"Starving", TipAt::kOnLine, starve},
+    {"Starved", TipAt::kOnLine,
      [](Rehearsal& plant) {
        starve(plant);
        EXPECT_TRUE(plant.until(State::kStarved, 1));
      }},
-    {"Aborting", Way::kOnLine,
+    {"Aborting", TipAt::kOnLine,
      [](Rehearsal& plant) {
        cut_and_run(plant, 0.3);
        plant.say(Verb::kAbort);
        plant.wait(0.02);
      }},
-    {"Disabling", Way::kNone,
+    {"Disabling", TipAt::kNone,
      [](Rehearsal& plant) {
        EXPECT_TRUE(plant.enable());
        plant.say(Verb::kDisable);
        EXPECT_EQ(plant.world.now(), State::kDisabling);
      }},
-    {"Jogging", Way::kElsewhere, lay_hand_on},
-    {"Jogging, let go", Way::kElsewhere,
+    {"Jogging", TipAt::kElsewhere, lay_hand_on},
+    {"Jogging, let go", TipAt::kElsewhere,
      [](Rehearsal& plant) {
        lay_hand_on(plant);
        plant.say(Verb::kHold);
        plant.wait(0.01);
      }},
-    {"Probing", Way::kOnLine, probe_and_run},
-    {"Probing, held", Way::kOnLine,
+    {"Probing", TipAt::kOnLine, probe_and_run},
+    {"Probing, held", TipAt::kOnLine,
      [](Rehearsal& plant) {
        probe_and_run(plant);
        plant.say(Verb::kHold);
        EXPECT_TRUE(plant.until(State::kHeld, 1));
      }},
-    {"Probing, behind its contact", Way::kOnLine,
+    {"Probing, behind its contact", TipAt::kOnLine,
      [](Rehearsal& plant) {
        probe_and_run(plant);
        plant.probe = ProbeInput::kContact;
        plant.wait(0.01);
        EXPECT_EQ(plant.world.now(), State::kAborting);
      }},
-    {"Homing", Way::kNone,
+    {"Homing", TipAt::kNone,
      [](Rehearsal& plant) {
        plant.world.in.session = 0;
        EXPECT_TRUE(plant.enable());
@@ -172,7 +172,7 @@ inline const std::array<Phase, 26> kMachinePhases{{
        EXPECT_EQ(plant.world.now(), State::kHoming);
      },
      true},
-    {"FaultStop of the stop input", Way::kOnLine,
+    {"FaultStop of the stop input", TipAt::kOnLine,
      [](Rehearsal& plant) {
        cut_and_run(plant, 0.3);
        plant.inject("emergency");

@@ -88,7 +88,7 @@ std::string found_in(const Phase& phase, const Unseen& unseen) {
   const std::size_t first = plant->world.records.size();
   if (*unseen.injection != '\0') plant->inject(unseen.injection);
   const bool is_fault = plant->until(State::kFault, 3);
-  if (phase.way == Way::kOnLine) {
+  if (phase.tip_at == TipAt::kOnLine) {
     EXPECT_LE(plant->deviation(first), 1e-9) << "mm off the path";
   }
   const Alarm alarm = plant->world.state.alarm;

@@ -72,12 +72,12 @@ class PlannerThreadTest : public testing::Test {
 
   /// Whether the newest approach that operators hear of is one in `epoch`.
   [[nodiscard]] bool is_approach_declared(std::uint16_t epoch) {
-    Approach way;
-    for (int i = 0; i < 500 && !(way.is_planned && way.epoch == epoch); ++i) {
+    Approach approach;
+    for (int i = 0; i < 500 && !(approach.is_planned && approach.epoch == epoch); ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      ports_->approach.load(way);
+      ports_->approach.load(approach);
     }
-    return way.is_planned && way.epoch == epoch;
+    return approach.is_planned && approach.epoch == epoch;
   }
 
   const MachineModel machine_;

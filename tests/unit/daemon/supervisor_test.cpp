@@ -128,16 +128,17 @@ TEST_F(SupervisorTest, MayLeaveTheMachineInOffAndInADryRun) {
 
 TEST_F(SupervisorTest, SaysThatItIsADryRunInFrontOfAReplyThatIsAsLongAsOneMayBe) {
   show(State::kLoaded, true);
-  Approach way;
-  way.is_planned = true;
-  way.epoch = 1;
-  way.to = {-1234, -1234, -1234, -2, -2};
-  way.retract = 12.3;
-  way.length = 1234;
+  Approach approach;
+  approach.is_planned = true;
+  approach.epoch = 1;
+  approach.to = {-1234, -1234, -1234, -2, -2};
+  approach.retract = 12.3;
+  approach.length = 1234;
   const std::string before = "dry run: start accepted; ";
   std::set<std::size_t> sizes;
-  for (way.line = 1; way.line <= 100'000; way.line *= 10) {  // a character more each time
-    ports_->approach.store(way);
+  for (approach.line = 1; approach.line <= 100'000;
+       approach.line *= 10) {  // a character more each time
+    ports_->approach.store(approach);
     ask(Verb::kStart);
     const auto start = take(Verb::kStart);
     ASSERT_TRUE(start);
@@ -147,7 +148,7 @@ TEST_F(SupervisorTest, SaysThatItIsADryRunInFrontOfAReplyThatIsAsLongAsOneMayBe)
     ASSERT_TRUE(ports_->events.try_push(accepted));
     dds::Reply reply;
     ASSERT_TRUE(comes([&] { return replies_.take(reply); }));
-    EXPECT_EQ(reply.text, before + telemetry::describe(way, model_, 191 - before.size()));
+    EXPECT_EQ(reply.text, before + telemetry::describe(approach, model_, 191 - before.size()));
     sizes.insert(reply.text.size());
   }
   EXPECT_TRUE(sizes.contains(191)) << *sizes.rbegin();

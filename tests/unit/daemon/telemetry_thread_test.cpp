@@ -77,11 +77,11 @@ class TelemetryThreadTest : public testing::Test {
     view.record.state = State::kLoaded;
     ports_->telemetry_view.store(view);
     emit(EventCode::kStateChanged, static_cast<std::uint64_t>(State::kLoaded));
-    Approach way;
-    way.is_planned = true;
-    way.epoch = epoch;
-    way.line = 12;
-    ports_->approach_for_status.store(way);
+    Approach approach;
+    approach.is_planned = true;
+    approach.epoch = epoch;
+    approach.line = 12;
+    ports_->approach_for_status.store(approach);
   }
   /// Whether a message comes that ends with `words`, while the thread works on.
   [[nodiscard]] bool comes(dds::Reader<dds::Status>& statuses, const std::string& words,

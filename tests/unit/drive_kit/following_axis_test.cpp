@@ -92,20 +92,21 @@ TEST_F(Following, AVelocityThatTheMotorDoesNotReportIsTheDifferenceOfPositions) 
 
 TEST_F(Following, LostSetpointsAreBridgedAndTheRampBehindKeepsTheLimits) {
   run_to(10);
-  double before = output().position, velocity = kVelocity, way = 0, steepest = 0;
+  double before = output().position, velocity = kVelocity, distance = 0, steepest = 0;
   for (int n = 1; axis_.state() != DriveState::kFault && n < 100; ++n) {
     nothing(n);
     const double now = (output().position - before) / kPeriod_s;
     EXPECT_LE(now, kVelocity * (1 + 1e-9)) << "never faster than it was sent";
     EXPECT_GE(now, -1e-9) << "never back";
     if (n > 1) steepest = std::max(steepest, std::abs(now - velocity) / kPeriod_s);
-    way += output().position - before;
+    distance += output().position - before;
     before = output().position;
     velocity = now;
   }
   EXPECT_EQ(axis_.error(), kErrorSetpointsStopped);
   EXPECT_LE(steepest, 5000 * (1 + 1e-6));
-  EXPECT_NEAR(way, 0.3 + kVelocity * kVelocity / (2 * 5000), 1e-6) << "the bridge and the ramp";
+  EXPECT_NEAR(distance, 0.3 + kVelocity * kVelocity / (2 * 5000), 1e-6)
+      << "the bridge and the ramp";
 }
 
 TEST_F(Following, AFaultOfTheHardwareRampsDownAndSaysWhich) {

@@ -37,12 +37,12 @@ ToolPose moved_by_screws(const Skeleton& s, const JointVector& q) {
   for (auto joint = s.joints.rbegin(); joint != s.joints.rend(); ++joint) {
     const auto i = static_cast<std::size_t>(joint->joint);
     // Moving the workpiece is moving the tool the other way, as the workpiece sees it.
-    const double way = (joint->side == Side::kTable ? -1 : 1) * (q[i] - s.joints_there[i]);
+    const double distance = (joint->side == Side::kTable ? -1 : 1) * (q[i] - s.joints_there[i]);
     if (joint->is_rotary) {
-      const Eigen::AngleAxisd turn(way, joint->direction);
+      const Eigen::AngleAxisd turn(distance, joint->direction);
       pose = {joint->point + turn * (pose.tip - joint->point), turn * pose.axis};
     } else {
-      pose.tip += way * joint->direction;
+      pose.tip += distance * joint->direction;
     }
   }
   return pose;
@@ -90,10 +90,10 @@ TEST_P(EveryShipped, HasAPatternThatMovesEveryJointAlone) {
     for (int branch = 0; branch < branch_count(model_); ++branch) {
       const auto solution = solve(model_, model_.tool_length_mm, pose, branch, q);
       if (solution.status == SolveStatus::kUnreachable) continue;
-      double way = 0;
-      for (std::size_t i = 0; i < q.size(); ++i) way += std::abs(solution.q[i] - q[i]);
-      if (way < nearest) best = solution.q;
-      nearest = std::min(nearest, way);
+      double distance = 0;
+      for (std::size_t i = 0; i < q.size(); ++i) distance += std::abs(solution.q[i] - q[i]);
+      if (distance < nearest) best = solution.q;
+      nearest = std::min(nearest, distance);
     }
     q = best;
     EXPECT_LT(first_joint_outside_travel(model_, q, 1e-6), 0);

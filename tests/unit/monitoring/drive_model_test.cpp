@@ -91,7 +91,7 @@ struct Wire {
 Result ramp_over(const Wire& wire, MonitoredAxes& axes, double lag_s) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> late(0, std::max(wire.late_s, 1e-12));
-  std::deque<std::pair<int, double>> on_their_way;
+  std::deque<std::pair<int, double>> in_flight;
   std::vector<double> at{0}, speeds{0};
   double y1 = 0, y2 = 0, target = 0, arrival_s = 0;
   int taken = 0;
@@ -103,9 +103,9 @@ Result ramp_over(const Wire& wire, MonitoredAxes& axes, double lag_s) {
     at.push_back(at.back() + speeds.back() * 1e-3);
     // The drive's period ahead of the cycle: it takes what has come, or bridges.
     int newest = taken;
-    for (; !on_their_way.empty() && on_their_way.front().second <= n * 1e-3 - 1e-9;
-         on_their_way.pop_front()) {
-      newest = on_their_way.front().first;
+    for (; !in_flight.empty() && in_flight.front().second <= n * 1e-3 - 1e-9;
+         in_flight.pop_front()) {
+      newest = in_flight.front().first;
     }
     const auto k = static_cast<std::size_t>(newest);
     target = newest > taken ? at[k] : target + speeds[k] * 1e-3;
@@ -128,7 +128,7 @@ Result ramp_over(const Wire& wire, MonitoredAxes& axes, double lag_s) {
     axes.in.periods = 1;
     if (first.finding == Finding::kNone) first = result;
     arrival_s = std::max(arrival_s, n * 1e-3 + late(random));
-    on_their_way.emplace_back(n, arrival_s);
+    in_flight.emplace_back(n, arrival_s);
   }
   return first;
 }

@@ -82,15 +82,15 @@ Result jogged_over_a_slow_wire(double speed, double late_s) {
   MonitoredAxes axes = jogged_with_an_open_guard();
   std::mt19937 random(7);
   std::uniform_real_distribution<double> late(0, late_s);
-  std::deque<std::pair<int, double>> on_their_way;  // report, arrival in s
+  std::deque<std::pair<int, double>> in_flight;  // report, arrival in s
   Result first;
   double last_s = 0;
   for (int n = 1; n < 2000; ++n) {
     last_s = std::max(last_s, n * 1e-3 + late(random));
-    on_their_way.emplace_back(n, last_s);
-    for (; !on_their_way.empty() && on_their_way.front().second <= n * 1e-3 + 1e-4;
-         on_their_way.pop_front()) {
-      const auto& [report, arrival_s] = on_their_way.front();
+    in_flight.emplace_back(n, last_s);
+    for (; !in_flight.empty() && in_flight.front().second <= n * 1e-3 + 1e-4;
+         in_flight.pop_front()) {
+      const auto& [report, arrival_s] = in_flight.front();
       axes.in.measured[0] = axes.in.tip[0] = speed * report * 1e-3;
       axes.in.arrival_ns.fill(std::llround(arrival_s * 1e9));
       axes.in.cycle_seen.fill(100 + static_cast<std::uint64_t>(report));

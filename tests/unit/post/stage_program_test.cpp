@@ -51,7 +51,7 @@ TEST(StageProgram, TheTipRunsAtItsFeedThoughTheDrivesRunEvenly) {
   ASSERT_TRUE(program) << program.error().message;
   const Read read{model, test::read_nc(program->text)};
   constexpr double kFeed_mm_per_s = 10;
-  double way = 0, time = 0;
+  double covered = 0, time = 0;
   for (std::size_t n = 1; n < read.nc.moves.size(); ++n) {
     const test::NcMove& before = read.nc.moves[n - 1];
     const test::NcMove& move = read.nc.moves[n];
@@ -63,11 +63,11 @@ TEST(StageProgram, TheTipRunsAtItsFeedThoughTheDrivesRunEvenly) {
     }
     const double length = (to.tip - from.tip).norm(), seconds = 60 / move.feed;
     EXPECT_NEAR(length / seconds, kFeed_mm_per_s, 0.05) << "NC line " << move.line;
-    way += length;
+    covered += length;
     time += seconds;
   }
-  EXPECT_NEAR(way, std::hypot(10, 5), 0.01);
-  EXPECT_NEAR(time, way / kFeed_mm_per_s, 1e-3 * time + 1e-3);
+  EXPECT_NEAR(covered, std::hypot(10, 5), 0.01);
+  EXPECT_NEAR(time, covered / kFeed_mm_per_s, 1e-3 * time + 1e-3);
 }
 
 TEST(StageProgram, WithARapidFeedNoBlockLeavesTheSlidersToThemselves) {

@@ -72,16 +72,14 @@ TEST(Progress, DoesNotCountTheTimeInHeld) {
 
 TEST(Progress, IsUnderWayFromTheApproachToTheLastBlockAndInStopsOnTheWay) {
   ProgressMeter meter(TimeTable{});
-  const auto is_under_way = [&](State state) {
-    return meter.look(status(state, 0), 0).is_under_way;
-  };
+  const auto is_active = [&](State state) { return meter.look(status(state, 0), 0).is_active; };
   for (const State state : {State::kApproaching, State::kRunning, State::kHolding, State::kHeld,
                             State::kStarving, State::kStarved, State::kAborting}) {
-    EXPECT_TRUE(is_under_way(state)) << static_cast<int>(state);
+    EXPECT_TRUE(is_active(state)) << static_cast<int>(state);
   }
   for (const State state : {State::kOff, State::kEnabling, State::kReady, State::kLoaded,
                             State::kDisabling, State::kFaultStop, State::kFault}) {
-    EXPECT_FALSE(is_under_way(state)) << static_cast<int>(state);
+    EXPECT_FALSE(is_active(state)) << static_cast<int>(state);
   }
 }
 

@@ -70,11 +70,11 @@ TEST(CheckedPath, LimitsTipAndAxisWhereFeedIsInverseTime) {
   path.add(block, 0);
   EXPECT_NEAR(path.elements()[0].feed_mm_per_s, 20, 1e-12);
   EXPECT_NEAR(path.elements()[0].turn_rad_per_s, 0.8, 1e-12);
-  EXPECT_NEAR(path.elements()[0].way_mm_per_s, 4 * std::hypot(5, 50 * 0.2), 1e-9);
+  EXPECT_NEAR(path.elements()[0].path_mm_per_s, 4 * std::hypot(5, 50 * 0.2), 1e-9);
   path.add(cut_to(3, {30, 0, 4}, 0.2, 1000), 0);
   EXPECT_EQ(path.elements()[1].feed_mm_per_s, 50) << "the machine's highest feed holds";
   EXPECT_EQ(path.elements()[1].turn_rad_per_s, 0);
-  EXPECT_NEAR(path.elements()[1].way, std::hypot(5, 10), 1e-9);
+  EXPECT_NEAR(path.elements()[1].path_begin, std::hypot(5, 10), 1e-9);
 }
 
 TEST(CheckedPath, MovesTheTipWithANewTool) {

@@ -26,8 +26,10 @@ FlightRow row_at(std::uint64_t cycle, const MachineModel& model) {
   Setpoint& setpoint = row.record.setpoint;
   setpoint.cycle = cycle;
   setpoint.due_ns = static_cast<std::int64_t>(cycle) * model.cycle_ns;
-  const auto way = [](std::uint64_t at) { return 0.05 * static_cast<double>(std::min(at, kRest)); };
-  setpoint.position = {1, way(cycle), 2, 0.1, 0.2};
+  const auto position = [](std::uint64_t at) {
+    return 0.05 * static_cast<double>(std::min(at, kRest));
+  };
+  setpoint.position = {1, position(cycle), 2, 0.1, 0.2};
   row.record.joints = setpoint.position;
   setpoint.velocity[1] = cycle < kRest ? 50 : 0;
   setpoint.flags = cycle < kRest ? kSetpointEnabled : 0;
@@ -40,7 +42,7 @@ FlightRow row_at(std::uint64_t cycle, const MachineModel& model) {
   row.drives.arrival_ns = setpoint.due_ns - 400'000;
   row.drives.cycle_seen = cycle - 2;
   row.drives.position = setpoint.position;
-  row.drives.position[1] = way(std::min(cycle - 2, kStuck));
+  row.drives.position[1] = position(std::min(cycle - 2, kStuck));
   row.drives.joint_mask = 0x1F;
   row.drives.statusword.fill(kEnabled);
   if (cycle >= kAlarmed + 3) {

@@ -32,12 +32,12 @@ CheckedPath quarter_in(double asked_s) {
 CheckReport check(double asked_s, double taken_s) {
   const CheckedPath path = quarter_in(asked_s);
   const PathElement& last = path.elements().back();
-  const double whole = last.way + last.way_length;
+  const double whole = last.path_begin + last.path_length;
   TimeCheck check(path, kTolerance_mm, kPeriod_s, CheckOptions{});
   const auto cycles = static_cast<std::uint64_t>(taken_s / kPeriod_s);
   for (std::uint64_t cycle = 0; cycle <= cycles; ++cycle) {
-    const double way = whole * static_cast<double>(cycle) / static_cast<double>(cycles);
-    check.add(way, way, cycle);
+    const double path_begin = whole * static_cast<double>(cycle) / static_cast<double>(cycles);
+    check.add(path_begin, path_begin, cycle);
   }
   CheckReport report;
   check.finish(report);

@@ -75,13 +75,13 @@ TEST_P(Explain, ChargesEveryCycleToABlockOnceAndReportsEveryBlockInOrder) {
   const Explained out = explain(corner_and_dense(), machine(GetParam()));
   ASSERT_EQ(out.run.report.outcome, Outcome::kDone);
   ASSERT_EQ(out.blocks.size(), out.run.report.blocks);
-  double time = 0, lost = 0, way = 0;
+  double time = 0, lost = 0, distance = 0;
   for (std::size_t n = 0; n < out.blocks.size(); ++n) {
     const ExplainedBlock& block = out.blocks[n];
     EXPECT_EQ(block.sequence, n);
     time += block.time_s;
     lost += block.lost_s;
-    way += block.way_mm;
+    distance += block.distance_mm;
     const float limits = std::accumulate(block.by_limit.begin(), block.by_limit.end(), 0.0F);
     const float causes = std::accumulate(block.by_cause.begin(), block.by_cause.end(), 0.0F);
     EXPECT_NEAR(limits, block.time_s, 1e-4 * block.time_s + 1e-7);
@@ -92,7 +92,7 @@ TEST_P(Explain, ChargesEveryCycleToABlockOnceAndReportsEveryBlockInOrder) {
   EXPECT_EQ(out.whole.cycles, out.cycles.size());
   EXPECT_NEAR(out.whole.time_s, out.run.report.program_s, 1e-6);
   EXPECT_NEAR(lost, out.whole.lost_s, 1e-9);
-  EXPECT_NEAR(way, 140, 0.1);
+  EXPECT_NEAR(distance, 140, 0.1);
   // Every cycle has its cause in the end, and all together those of the whole.
   std::array<double, kCauses> by_cause{};
   for (const ExplainedCycle& cycle : out.cycles) {

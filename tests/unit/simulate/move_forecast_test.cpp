@@ -23,9 +23,9 @@ constexpr double kAxis_rad = 1e-9;
 class Move : public testing::Test {
  protected:
   /// From `joints` by so much, to `axis`.
-  [[nodiscard]] stream::StraightMove by(const Vector3& way_mm, const Vector3& axis) const {
+  [[nodiscard]] stream::StraightMove by(const Vector3& displacement_mm, const Vector3& axis) const {
     const ToolPose from = forward(model, model.tool_length_mm, joints);
-    return {from, {from.tip + way_mm, axis.normalized()}, 3000};
+    return {from, {from.tip + displacement_mm, axis.normalized()}, 3000};
   }
   [[nodiscard]] MoveForecast forecast_of(const stream::StraightMove& move) const {
     return forecast(move, joints, model);

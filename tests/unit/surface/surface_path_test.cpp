@@ -60,14 +60,14 @@ double distance_to_segment(const Vector3& p, const Vector3& a, const Vector3& b)
 
 /// Largest distance of exact contact and tip from the straight blocks, by 99 places in each.
 double dense_error(const ContactRule& rule, const SurfacePath& path) {
-  std::vector<Contact> way;
+  std::vector<Contact> points;
   for (const SurfacePath::Line& line : path.lines) {
-    way.insert(way.end(), line.contacts.begin(), line.contacts.end());
-    way.insert(way.end(), line.crossing.begin(), line.crossing.end());
+    points.insert(points.end(), line.contacts.begin(), line.contacts.end());
+    points.insert(points.end(), line.crossing.begin(), line.crossing.end());
   }
   double worst = 0;
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const Contact &a = way[i - 1], &b = way[i];
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Contact &a = points[i - 1], &b = points[i];
     for (int k = 1; k < 100; ++k) {
       const double share = k / 100.0;
       const auto c = find_contact(rule, a.u + share * (b.u - a.u), a.v + share * (b.v - a.v));

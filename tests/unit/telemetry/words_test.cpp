@@ -45,62 +45,63 @@ TEST(Words, NameTheSingularityThatARobotPasses) {
 
 TEST(Words, DeclareAnApproachByJointsTimeBranchAndWinding) {
   const MachineModel model = test::lai_machine();
-  Approach way;
-  way.is_planned = true;
-  way.line = 12;
-  way.from = {10, 20, -30, 0.5, 0.1, 0};
-  way.to = {-2.5, 20, -130, 0.5 + units::rad_from_deg(360), 0, 0};
-  way.retract = 20;
-  way.descent = 50;
-  way.length = 345.678;
-  way.time = 3.21;
-  way.branch = 1;
-  EXPECT_EQ(describe(way, model, 1000),
+  Approach approach;
+  approach.is_planned = true;
+  approach.line = 12;
+  approach.from = {10, 20, -30, 0.5, 0.1, 0};
+  approach.to = {-2.5, 20, -130, 0.5 + units::rad_from_deg(360), 0, 0};
+  approach.retract = 20;
+  approach.descent = 50;
+  approach.length = 345.678;
+  approach.time = 3.21;
+  approach.branch = 1;
+  EXPECT_EQ(describe(approach, model, 1000),
             "approach to line 12: up 20 mm, joints straight b3 -12.5, b4 -100 mm, theta1 +360, "
             "theta2 -5.73 deg, down 50 mm, 345.7 mm in 3.2 s, branch 1, theta1 at 388.6 deg");
-  way.has_rest = true;
+  approach.has_rest = true;
   const auto begins = [&](const std::string& words) {
-    return describe(way, model, 1000).rfind("approach to line 12: " + words, 0) == 0;
+    return describe(approach, model, 1000).rfind("approach to line 12: " + words, 0) == 0;
   };
   ASSERT_EQ(model.clearance_mm, 50);
   EXPECT_FALSE(is_short_of_clearance({}, model)) << "it begins where it begins";
   EXPECT_TRUE(begins("up 20 of 50 mm (NEAR THE PART), actions, joints ")) << "begins in its middle";
-  EXPECT_TRUE(is_short_of_clearance(way, model));
-  way.retract = 0;
+  EXPECT_TRUE(is_short_of_clearance(approach, model));
+  approach.retract = 0;
   EXPECT_TRUE(begins("up 0 of 50 mm (NEAR THE PART), actions, joints "))
       << "least of all in silence";
-  EXPECT_NE(describe(way, model, 120).find("up 0 of 50 mm (NEAR THE PART)"), std::string::npos);
-  way.retract = 50;
-  way.lift = 70;
+  EXPECT_NE(describe(approach, model, 120).find("up 0 of 50 mm (NEAR THE PART)"),
+            std::string::npos);
+  approach.retract = 50;
+  approach.lift = 70;
   EXPECT_TRUE(begins("up 50 of 50 mm, actions, up 70 mm, joints ")) << "with a longer tool";
-  EXPECT_FALSE(is_short_of_clearance(way, model));
-  way.lift = 0;
-  way.to = way.from;
+  EXPECT_FALSE(is_short_of_clearance(approach, model));
+  approach.lift = 0;
+  approach.to = approach.from;
   EXPECT_EQ(
-      describe(way, model, 1000),
+      describe(approach, model, 1000),
       "approach to line 12: up 50 of 50 mm, actions, down 50 mm, 345.7 mm in 3.2 s, branch 1, "
       "theta1 at 28.65 deg");
-  way.has_rest = false;
-  way.retract = way.descent = 0;
-  EXPECT_EQ(describe(way, model, 1000), "approach to line 12: none, the tool is there");
+  approach.has_rest = false;
+  approach.retract = approach.descent = 0;
+  EXPECT_EQ(describe(approach, model, 1000), "approach to line 12: none, the tool is there");
 }
 
 TEST(Words, LeaveWholePartsOfAnApproachOutWhereThereIsNoRoomForThem) {
   const MachineModel model = test::lai_machine();
-  Approach way;
-  way.line = 1234567;
-  way.to = {-1234, -1234, -1234, units::rad_from_deg(-123.4), units::rad_from_deg(-123.4)};
-  way.retract = way.descent = 123.4;
-  way.length = 1234;
-  way.time = 123.4;
+  Approach approach;
+  approach.line = 1234567;
+  approach.to = {-1234, -1234, -1234, units::rad_from_deg(-123.4), units::rad_from_deg(-123.4)};
+  approach.retract = approach.descent = 123.4;
+  approach.length = 1234;
+  approach.time = 123.4;
   const std::string shortest = "approach to line 1234567: 1234 mm in 123.4 s, branch 0";
-  const std::string all = describe(way, model, 1000);
-  EXPECT_EQ(describe(way, model, all.size()), all);
-  const std::string without_winding = describe(way, model, all.size() - 1);
+  const std::string all = describe(approach, model, 1000);
+  EXPECT_EQ(describe(approach, model, all.size()), all);
+  const std::string without_winding = describe(approach, model, all.size() - 1);
   EXPECT_EQ(without_winding + ", theta1 at -123.4 deg", all);
-  EXPECT_EQ(describe(way, model, without_winding.size()), without_winding);
-  EXPECT_EQ(describe(way, model, without_winding.size() - 1), shortest);
-  EXPECT_EQ(describe(way, model, 0), shortest);
+  EXPECT_EQ(describe(approach, model, without_winding.size()), without_winding);
+  EXPECT_EQ(describe(approach, model, without_winding.size() - 1), shortest);
+  EXPECT_EQ(describe(approach, model, 0), shortest);
 }
 
 TEST(Words, SayEveryAlarmDifferently) {

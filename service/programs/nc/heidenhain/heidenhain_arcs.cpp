@@ -17,7 +17,7 @@ void add_word(Line& iso, std::string_view address, double number) {
   Word word;
   word.address = address;
   word.number = number;
-  word.way = Word::Way::kAbsolute;
+  word.distance_mode = Word::DistanceMode::kAbsolute;
   word.has_point = true;
   iso.words.push_back(word);
 }
@@ -87,7 +87,7 @@ cl::Outcome set_pole(State& s, const Line& line) {
   for (std::size_t k = 0; k < 2; ++k) {
     const Word* const word = line.find(k == 0 ? "X" : "Y");
     if (word == nullptr) continue;
-    const bool is_relative = word->way == Word::Way::kIncremental;
+    const bool is_relative = word->distance_mode == Word::DistanceMode::kIncremental;
     if (is_relative && !s.place.tip[k])
       return refuse("CC from a place that is not known here", "write X and Y of CC as absolute");
     s.modes.pole[k] = is_relative ? *s.place.tip[k] + word->number : word->number;

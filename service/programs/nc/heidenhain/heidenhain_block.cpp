@@ -118,7 +118,9 @@ bool is_of_motion(const Word& word) {
 
 /// L B+Q121 C+Q122 behind PLANE .. STAY: the rotary axes go to where the plane wants them.
 cl::Outcome take_plane_angles(State& s, Line& iso) {
-  const auto is_of_plane = [](const Word& word) { return word.way == Word::Way::kOfPlane; };
+  const auto is_of_plane = [](const Word& word) {
+    return word.distance_mode == Word::DistanceMode::kOfPlane;
+  };
   if (std::none_of(iso.words.begin(), iso.words.end(), is_of_plane)) return {};
   if (s.frames.tilt == Tilt::kNone || s.modes.motion != Motion::kRapid) {
     return refuse("a Q parameter", kMovesByCam, "Q");

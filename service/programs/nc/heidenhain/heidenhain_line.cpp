@@ -151,7 +151,7 @@ class KlartextCutter {
     const bool is_incremental = word.address.size() == 2 && word.address.front() == 'I';
     if (is_incremental) {
       word.address.remove_prefix(1);
-      word.way = Word::Way::kIncremental;
+      word.distance_mode = Word::DistanceMode::kIncremental;
     }
     return cut_number(word);
   }
@@ -181,7 +181,7 @@ class KlartextCutter {
       return refuse("a Q parameter", kMovesByCam, "Q");
     }
     rest_.remove_prefix(size);
-    word.way = Word::Way::kOfPlane;
+    word.distance_mode = Word::DistanceMode::kOfPlane;
     word.has_point = true;
     line_.words.push_back(word);
     return {};

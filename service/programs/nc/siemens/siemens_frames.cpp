@@ -22,7 +22,7 @@ Expected<std::array<std::optional<double>, 3>, cl::Refusal> axes_of(const Line& 
   std::array<std::optional<double>, 3> out;
   for (const Word& word : line.words) {
     const std::size_t k = word.address.size() == 1 ? kAxes.find(word.address.front()) : 3;
-    if (k >= out.size() || word.way != Word::Way::kModal) {
+    if (k >= out.size() || word.distance_mode != Word::DistanceMode::kModal) {
       return refuse(std::string(name) + " with the word " + std::string(word.address),
                     "write it in a block of its own, with X, Y and Z");
     }
@@ -69,9 +69,9 @@ cl::Outcome take_rigid(State& s, const Line& line, const Line::Name& name) {
   }
   cl::Frame frame;
   if (kind == "TRANS") {
-    const auto way = axes_of(line, name.name);
-    if (!way) return tl::make_unexpected(way.error());
-    frame.origin = as_vector(*way);
+    const auto offset = axes_of(line, name.name);
+    if (!offset) return tl::make_unexpected(offset.error());
+    frame.origin = as_vector(*offset);
   } else if (kind == "ROT") {
     const auto rotation = rotation_of(s, line, name.name);
     if (!rotation) return tl::make_unexpected(rotation.error());

@@ -226,9 +226,9 @@ class SiemensCutter {
     if (how != "AC" && how != "IC") return cut_named_number(word);
     (void)take_while(is_name_sign);
     if (how == "AC") {
-      word.way = Word::Way::kAbsolute;
+      word.distance_mode = Word::DistanceMode::kAbsolute;
     } else {
-      word.way = Word::Way::kIncremental;
+      word.distance_mode = Word::DistanceMode::kIncremental;
     }
     if (!take('(')) return refuse(std::string(how) + " without its bracket");
     skip_blanks();

@@ -88,17 +88,17 @@ void CheckedPath::add(const ClBlock& block, double new_tool_length_mm) {
     tip_length = std::hypot(block.sweep_rad * element.arc_x.norm(), element.tip_delta.norm());
     parts = std::max(1, static_cast<int>(std::ceil(block.sweep_rad / kLargestPart_rad)));
   }
-  const double way_length = std::hypot(tip_length, turn_length);
+  const double path_length = std::hypot(tip_length, turn_length);
   if (block.feed_meaning != FeedMeaning::kNone) {
     element.is_timed = block.feed_meaning == FeedMeaning::kInverseTime;
     const double per_s = element.is_timed ? block.feed : block.feed / tip_length;
     element.feed_mm_per_s =
         std::min(element.is_timed ? per_s * tip_length : block.feed, max_feed_mm_per_s_);
     element.turn_rad_per_s = circle.turn > 0 ? per_s * circle.turn : 0;
-    element.way_mm_per_s = way_length > 0 ? per_s * way_length : 0;
+    element.path_mm_per_s = path_length > 0 ? per_s * path_length : 0;
   }
   element.length = (tip_length + turn_length) / parts;
-  element.way_length = way_length / parts;
+  element.path_length = path_length / parts;
   const PathElement whole = element;
   for (int i = 0; i < parts; ++i) {
     if (parts > 1) {
@@ -118,9 +118,9 @@ void CheckedPath::add(const ClBlock& block, double new_tool_length_mm) {
     }
     element.arc_sweep = block.is_arc ? block.sweep_rad / parts : 0;
     element.s = length_;
-    element.way = way_;
+    element.path_begin = passed_;
     length_ += element.length;
-    way_ += element.way_length;
+    passed_ += element.path_length;
     elements_.push_back(element);
   }
   tip_length_mm_ += tip_length;

@@ -26,19 +26,19 @@ struct PathElement {
   bool is_timed = false;  ///< its block is in inverse time
   double feed_mm_per_s = kNoFeed;   ///< tip speed that its block asks for, at most the machine's
   double turn_rad_per_s = kNoFeed;  ///< the same of the axis; infinite in rapids
-  double way = 0;         ///< at its begin: root of the squares of tip length and 50 mm per rad
-  double way_length = 0;  ///< of it
-  double way_mm_per_s = kNoFeed;  ///< that its block asks for
-  double tool_length_mm = 0;      ///< gauge line to tip while it is cut
-  std::uint32_t line = 0;         ///< source line of its block
-  bool is_block_end = true;       ///< false between the parts of an arc
+  double path_begin = 0;   ///< at its begin: root of the squares of tip length and 50 mm per rad
+  double path_length = 0;  ///< of it
+  double path_mm_per_s = kNoFeed;  ///< that its block asks for
+  double tool_length_mm = 0;       ///< gauge line to tip while it is cut
+  std::uint32_t line = 0;          ///< source line of its block
+  bool is_block_end = true;        ///< false between the parts of an arc
 
   static constexpr double kNoFeed = std::numeric_limits<double>::infinity();
 
   /// Of `length`, what the tip goes.
   [[nodiscard]] double tip_length() const noexcept;
   /// The way at `t` in [0, 1].
-  [[nodiscard]] double way_to(double t) const noexcept { return way + t * way_length; }
+  [[nodiscard]] double path_to(double t) const noexcept { return path_begin + t * path_length; }
   /// Pose at `t` in [0, 1].
   [[nodiscard]] ToolPose pose(double t) const noexcept;
   /// Derivative of pose by t.
@@ -72,7 +72,7 @@ class CheckedPath {
   ToolPose begin_{}, end_{};
   double tool_length_mm_, begin_tool_length_mm_;
   double max_feed_mm_per_s_;
-  double length_ = 0, way_ = 0, tip_length_mm_ = 0;
+  double length_ = 0, passed_ = 0, tip_length_mm_ = 0;
   std::uint64_t motion_blocks_ = 0;
   std::uint32_t begin_line_ = 0;
   bool has_begin_ = false;

@@ -154,10 +154,10 @@ void PathCheck::step(bool has_between) {
   }
   match(to.joints, to, true);
   if (!path_.elements().empty()) {
-    const auto way_to = [this](PathMatching::Position at) {
-      return elements_[at.element].way_to(at.t);
+    const auto path_to = [this](PathMatching::Position at) {
+      return elements_[at.element].path_to(at.t);
     };
-    times_.add(way_to(matching_.highest()), way_to(matching_.lowest()), to.cycle);
+    times_.add(path_to(matching_.highest()), path_to(matching_.lowest()), to.cycle);
   }
   if (is_next) compare_speeds(from, to, low);
 }

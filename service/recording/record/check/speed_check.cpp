@@ -49,15 +49,16 @@ SpeedCheck::Speeds SpeedCheck::asked_between(PathMatching::Position low,
   }
   if (is_timed) {
     const auto has_feed = [&](std::size_t i) { return elements[i].feed_mm_per_s < kNoFeed; };
-    const double from = elements[first].way_to(low.t) - kSpeedReach_mm;
-    const double to = elements[last].way_to(high.t) + kSpeedReach_mm;
-    while (first > 0 && elements[first].way >= from && has_feed(first - 1)) --first;
-    while (last + 1 < elements.size() && elements[last + 1].way <= to && has_feed(last + 1)) ++last;
+    const double from = elements[first].path_to(low.t) - kSpeedReach_mm;
+    const double to = elements[last].path_to(high.t) + kSpeedReach_mm;
+    while (first > 0 && elements[first].path_begin >= from && has_feed(first - 1)) --first;
+    while (last + 1 < elements.size() && elements[last + 1].path_begin <= to && has_feed(last + 1))
+      ++last;
   }
   Speeds out{0, bounds_axis ? 0 : kNoFeed};
   for (std::size_t i = first; i <= last; ++i) {
     const PathElement& element = elements[i];
-    const double reaches_per_s = element.way_mm_per_s / kSpeedReach_mm;
+    const double reaches_per_s = element.path_mm_per_s / kSpeedReach_mm;
     const double min_tip = element.is_timed ? options_.tip_tolerance_mm * reaches_per_s : 0;
     out.tip_mm_per_s = std::max({out.tip_mm_per_s, element.feed_mm_per_s, min_tip});
     out.turn_rad_per_s = std::max(

@@ -22,24 +22,24 @@ TimeCheck::TimeCheck(const CheckedPath& path, double tolerance_mm, double period
 void TimeCheck::add(double matched, double passed, std::uint64_t cycle) {
   const auto& elements = path_.elements();
   while (entered_.size() < elements.size() &&
-         matched >= elements[entered_.size()].way + tolerance_) {
+         matched >= elements[entered_.size()].path_begin + tolerance_) {
     entered_.push_back(cycle);
   }
   for (; left_ < entered_.size(); ++left_) {
     const PathElement& element = elements[left_];
-    if (passed < element.way + element.way_length - tolerance_) return;
-    way_ += element.way_length;
+    if (passed < element.path_begin + element.path_length - tolerance_) return;
+    passed_ += element.path_length;
     if (!element.is_block_end) continue;
     check(element, entered_[first_], cycle);
     first_ = left_ + 1;
-    way_ = 0;
+    passed_ = 0;
   }
 }
 
 void TimeCheck::check(const PathElement& last, std::uint64_t begin, std::uint64_t end) {
-  const double way = way_ - kLag * tolerance_;
-  if (!last.is_timed || !(way > 0)) return;
-  const double min = way / (last.way_mm_per_s * factor_);
+  const double path_begin = passed_ - kLag * tolerance_;
+  if (!last.is_timed || !(path_begin > 0)) return;
+  const double min = path_begin / (last.path_mm_per_s * factor_);
   const double share = static_cast<double>(end - begin + 1) * period_ / min;
   if (share >= 1 - kRoundingShare) return;
   ++worst_.count;

@@ -32,7 +32,7 @@ class TimeCheck {
   std::vector<std::uint64_t> entered_;  ///< cycle in which an element's inner part was reached
   std::size_t left_ = 0;                ///< elements whose inner part is behind the tool
   std::size_t first_ = 0;               ///< first element of the block that is being left
-  double way_ = 0;                      ///< of its elements that were left
+  double passed_ = 0;                   ///< of its elements that were left
   Finding worst_;
   double worst_share_ = 1;
 };

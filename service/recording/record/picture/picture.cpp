@@ -54,7 +54,7 @@ void print(std::FILE* out, const Extremes& value, double scale) {
 
 /// Data block $whiskers: the tool axis at even steps along the cut, as vectors.
 void print_whiskers(std::FILE* out, const PictureData& data) {
-  double way = 0;
+  double total = 0;
   const auto each_cut = [&data](auto&& use) {
     for (std::size_t i = 1; i < data.tip.size(); ++i) {
       const auto& from = data.tip[i - 1];
@@ -63,19 +63,19 @@ void print_whiskers(std::FILE* out, const PictureData& data) {
       use(to, (to.tip - from.tip).norm());
     }
   };
-  each_cut([&way](const PictureData::Point&, double step) { way += step; });
+  each_cut([&total](const PictureData::Point&, double step) { total += step; });
   const double length = 0.16 * longest_side(box_of(data));
-  double since = way;
+  double since = total;
   std::fputs("$whiskers << EOD\n", out);
   each_cut([&](const PictureData::Point& at, double step) {
     since += step;
-    if (since < way / kWhiskers) return;
+    if (since < total / kWhiskers) return;
     since = 0;
     const Vector3 by = length * at.axis;
     std::fprintf(out, "%.6g %.6g %.6g %.6g %.6g %.6g\n", at.tip[0], at.tip[1], at.tip[2], by[0],
                  by[1], by[2]);
   });
-  std::fputs(way > 0 ? "EOD\n" : "NaN NaN NaN NaN NaN NaN\nEOD\n", out);
+  std::fputs(total > 0 ? "EOD\n" : "NaN NaN NaN NaN NaN NaN\nEOD\n", out);
 }
 
 /// Data blocks: $way (a blank line parts stretches of one kind) and $columns.

@@ -13,11 +13,11 @@ namespace {
 
 /// A point of the tip's way is kept where it is this far from the last one kept, as a part of the
 /// whole way, or where the kind changes.
-constexpr double kPointsOnWay = 20000;
+constexpr double kPointsOnPath = 20000;
 
 struct Span {
   std::uint64_t first = 0, last = 0;
-  double way_mm = 0;
+  double distance_mm = 0;
 };
 
 template <class Use>
@@ -75,12 +75,12 @@ class Filler {
       column.feed_mm_per_s.add(feed->second);
     }
     tip_ = tip;
-    auto& way = data_.tip;
-    if (way.empty() || way.back().kind != row.kind ||
-        (tip - way.back().tip).norm() >= span_.way_mm / kPointsOnWay) {
-      if (!way.empty() && way.back().kind != row.kind)
-        way.push_back({tip, pose.axis, way.back().kind});
-      way.push_back({tip, pose.axis, row.kind});
+    auto& points = data_.tip;
+    if (points.empty() || points.back().kind != row.kind ||
+        (tip - points.back().tip).norm() >= span_.distance_mm / kPointsOnPath) {
+      if (!points.empty() && points.back().kind != row.kind)
+        points.push_back({tip, pose.axis, points.back().kind});
+      points.push_back({tip, pose.axis, row.kind});
     }
   }
 
@@ -108,9 +108,9 @@ std::optional<RecordError> gather(RecordingReader& recording, const CheckedPath&
       if (!has_moved) span.first = before.cycle;
       has_moved = true;
       span.last = row.cycle;
-      span.way_mm += (forward(model, path.begin_tool_length_mm(), row.joints).tip -
-                      forward(model, path.begin_tool_length_mm(), before.joints).tip)
-                         .norm();
+      span.distance_mm += (forward(model, path.begin_tool_length_mm(), row.joints).tip -
+                           forward(model, path.begin_tool_length_mm(), before.joints).tip)
+                              .norm();
     }
     before = row;
     has_before = true;
