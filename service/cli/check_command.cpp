@@ -83,7 +83,7 @@ void find_overrides(Options& options, const MachineModel& model) {
     if (!read) return read.error().text();
     if (!*read) break;
     Setpoint setpoint{.cycle = row.cycle, .due_ns = row.due_ns};
-    setpoint.position = drives_at(model, row.places);
+    setpoint.position = drives_at(model, row.positions);
     setpoint.line = row.line;
     setpoint.flags = row.flags;
     view.add(setpoint, {.tool_length_mm = path.begin_tool_length_mm()});

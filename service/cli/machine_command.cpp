@@ -35,10 +35,10 @@ int refuse(const std::string& message) {
 
 /// The picture of the machine at places of a program.
 int draw_along(const Options& options, const MachineModel& model) {
-  constexpr int kPlaces = 9;
+  constexpr int kSamples = 9;
   const auto poses = read_program_poses(options.along, options.cl, options.machine, model);
   if (!poses) return refuse(poses.error());
-  const auto postures = inspect::postures_along(model, *poses, kPlaces);
+  const auto postures = inspect::postures_along(model, *poses, kSamples);
   if (!postures) return refuse(options.along + ": " + postures.error());
   const auto error = inspect::draw_along(model, *postures, options.picture);
   return error ? refuse(*error) : kFine;

@@ -55,7 +55,7 @@ int refuse(const std::string& message) {
       return tl::make_unexpected(
           record::RecordError{file, 0, "the drives are never enabled in it", "name another"});
     }
-    if (is_leading(row.flags)) return drives_at(model, row.places);
+    if (is_leading(row.flags)) return drives_at(model, row.positions);
   }
 }
 
@@ -65,7 +65,8 @@ class Explaining {
   Explaining(const Options& options, const MachineModel& model)
       : options_(options), model_(model), picture_(model), view_(model, options.html) {
     cause_.tool_length_mm = model.tool_length_mm;
-    cause_.cause = static_cast<std::uint8_t>(simulate::Cause::kWaiting);  // nothing is explained yet
+    cause_.cause =
+        static_cast<std::uint8_t>(simulate::Cause::kWaiting);  // nothing is explained yet
     if (!options.explain_table.empty()) {
       table_.emplace(options.explain_table).out() << simulate::explained_header(model);
     }
@@ -79,8 +80,8 @@ class Explaining {
         },
         [this](const simulate::ExplainedCycle& cycle) {
           if (!options_.picture.empty()) picture_.add(cycle);
-          const auto cause = cycle.cause ? static_cast<std::uint8_t>(*cycle.cause)
-                                         : panel::RunView::kUndecided;
+          const auto cause =
+              cycle.cause ? static_cast<std::uint8_t>(*cycle.cause) : panel::RunView::kUndecided;
           cause_ = {cycle.programmed_mm_per_s, cycle.limit, cause, cycle.tool_length_mm};
         },
         [this](simulate::Cause cause) { view_.decide(static_cast<std::uint8_t>(cause)); });

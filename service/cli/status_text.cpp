@@ -26,12 +26,12 @@ std::size_t joint_count(const dds::MachineInfo& machine) {
 }
 
 /// The joint, or behind the joints the drive of the stage; empty: there is none.
-std::string limited_name(const dds::MachineInfo& machine, std::size_t place) {
+std::string limited_name(const dds::MachineInfo& machine, std::size_t index) {
   const std::size_t joints = joint_count(machine);
-  if (place < joints) return machine.joints[place].name;
+  if (index < joints) return machine.joints[index].name;
   const std::size_t drives =
       std::min<std::size_t>(machine.stage_drive_count, machine.stage_drives.size());
-  return place - joints < drives ? machine.stage_drives[place - joints].name : "";
+  return index - joints < drives ? machine.stage_drives[index - joints].name : "";
 }
 
 /// The joint, or drive of the stage, of the alarm in force; empty: it is of none.

@@ -47,9 +47,9 @@ dds::MachineInfo machine_info(const ServiceParts& parts, std::uint64_t service_i
   for (int i = model.joint_count; i < limited_count(model); ++i) {
     const JointSpec& spec = limited_spec(model, i);
     const auto k = static_cast<std::size_t>(i - model.joint_count);
-    const int place = k == 0 ? model.stage.linear_joint : model.stage.rotary_joint;
+    const int model_joint = k == 0 ? model.stage.linear_joint : model.stage.rotary_joint;
     info.stage_drives[k] = {spec.name,       spec.is_rotary,
-                            spec.is_endless, static_cast<std::uint16_t>(place),
+                            spec.is_endless, static_cast<std::uint16_t>(model_joint),
                             spec.limits,     spec.home};
   }
   info.max_feed_mm_per_min = units::per_min_from_per_s(model.max_feed_mm_per_s);

@@ -105,8 +105,8 @@ BlockReject BlockCheck::check(ClBlock& block, const ActionPeer& actions) {
       block.action > ActionKind::kVendorWord) {
     return reject(block, RejectCode::kKind);
   }
-  if (const int place = first_not_finite(block); place >= 0) {
-    return reject(block, RejectCode::kNotFinite, place);
+  if (const int index = first_not_finite(block); index >= 0) {
+    return reject(block, RejectCode::kNotFinite, index);
   }
   block.text[sizeof block.text - 1] = '\0';
   // It goes on to terminals and to other machines' controls.
@@ -246,9 +246,9 @@ BlockReject BlockCheck::find_joints(const ClBlock& block, bool& is_marginal) {
   if (is_at_pole) {
     // The redundant joint may stand anywhere here: look around the circle for a place inside
     // travel.
-    constexpr int kPlaces = 72;
-    for (int i = 0; i < kPlaces; ++i) {
-      const double free = joints_[redundant_joint(model_)] + 2 * std::numbers::pi * i / kPlaces;
+    constexpr int kSamples = 72;
+    for (int i = 0; i < kSamples; ++i) {
+      const double free = joints_[redundant_joint(model_)] + 2 * std::numbers::pi * i / kSamples;
       if (passes(solve_held(model_, tool_length_mm_, pose, free))) {
         return reject(block, RejectCode::kNone);
       }

@@ -12,7 +12,7 @@ namespace meridian::stream {
 
 namespace {
 
-constexpr std::array kPlaces = {"tip x",    "tip y",    "tip z",    "axis i",   "axis j",
+constexpr std::array kFields = {"tip x",    "tip y",    "tip z",    "axis i",   "axis j",
                                 "axis k",   "feed",     "value",    "centre x", "centre y",
                                 "centre z", "normal x", "normal y", "normal z", "sweep"};
 
@@ -68,8 +68,8 @@ std::string reason_of(const BlockReject& reject, const MachineModel& model) {
     case RejectCode::kNone:
       return "nothing is wrong";
     case RejectCode::kNotFinite: {
-      const auto place = static_cast<std::size_t>(reject.value);
-      return std::string(place < kPlaces.size() ? kPlaces[place] : "a number") +
+      const auto index = static_cast<std::size_t>(reject.value);
+      return std::string(index < kFields.size() ? kFields[index] : "a number") +
              " is not a finite number";
     }
     case RejectCode::kKind:

@@ -21,8 +21,8 @@ namespace meridian::stream {
 
 /// What the intake thread knows at the moment of a call.
 struct Surroundings {
-  std::int64_t now_ns = 0;      ///< monotonic
-  std::size_t free_places = 0;  ///< of the block queue
+  std::int64_t now_ns = 0;     ///< monotonic
+  std::size_t free_slots = 0;  ///< of the block queue
   ActionPeer actions;
   bool is_tool_known = true;  ///< false: its change was given up and is not answered yet
 };

@@ -11,7 +11,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kBetweenSamples{20};
 constexpr std::chrono::seconds kBraking{5};  ///< no joint takes longer to come to rest
-constexpr double kSamePlace = 1e-6;          ///< mm or rad
+constexpr double kSamePosition = 1e-6;       ///< mm or rad
 /// A machine says where it is twenty times a second; one that is silent for so long is gone.
 constexpr std::chrono::seconds kSilence{2};
 /// What the machine says so long after its reply is no older than that.
@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds kStartDelay{300};
 [[nodiscard]] JointVector joints_of(const OperatorLink& link) {
   return link.status() ? link.status()->joints : JointVector{};
 }
-[[nodiscard]] double place_of(const OperatorLink& link, const JogPlan& plan) {
+[[nodiscard]] double position_of(const OperatorLink& link, const JogPlan& plan) {
   return plan.is_tool ? 0 : joints_of(link)[static_cast<std::size_t>(plan.joint)];
 }
 
@@ -68,7 +68,7 @@ JogHand::Grip JogHand::hold(const JogPlan& plan, const dds::Reply& reply,
 
 JogHand::Grip JogHand::press(const JogPlan& plan, const dds::Reply& reply,
                              const std::atomic<bool>& is_let_go) {
-  const double from = place_of(link_, plan);
+  const double from = position_of(link_, plan);
   const auto begin = Clock::now();
   JointVector seen = joints_of(link_);
   auto heard = begin, moved = begin;  // when the machine spoke, and was seen to move, last
@@ -88,8 +88,9 @@ JogHand::Grip JogHand::press(const JogPlan& plan, const dds::Reply& reply,
     if (has_begun && !is_jogging) return Grip::kTakenOff;
     if (joints_of(link_) != seen) moved = now;
     seen = joints_of(link_);
-    const double place = place_of(link_, plan);
-    const bool is_there = plan.distance > 0 && std::abs(place - from) >= plan.distance - kSamePlace;
+    const double position = position_of(link_, plan);
+    const bool is_there =
+        plan.distance > 0 && std::abs(position - from) >= plan.distance - kSamePosition;
     // It stands at the end of its travel, or of the tool's way.
     const bool stands = now - moved > std::chrono::milliseconds(500);
     if (plan.time_s == 0 && (is_there || stands)) break;
@@ -106,7 +107,7 @@ JogResult JogHand::wait_for_rest(const JogPlan& plan, bool was_held) {
   while (Clock::now() < end && !is_over()) (void)link_.wait_for_status(kBetweenSamples);
   const bool is_done = was_held && link_.status()->state == State::kReady;
   return {is_done ? JogEnd::kDone : JogEnd::kTakenOff, is_done ? "" : link_.status()->message,
-          place_of(link_, plan)};
+          position_of(link_, plan)};
 }
 
 }  // namespace meridian::stream

@@ -38,10 +38,10 @@ namespace {
   if (std::filesystem::exists(a, ignored)) {
     return std::filesystem::is_regular_file(a, ignored) && is_same_file(a, b);
   }
-  const auto place = [&ignored](const std::string& name) {
+  const auto resolved = [&ignored](const std::string& name) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(name, ignored), ignored);
   };
-  return place(a) == place(b);
+  return resolved(a) == resolved(b);
 }
 
 }  // namespace

@@ -46,24 +46,24 @@ using Endpoint = std::unique_ptr<dds_builtintopic_endpoint_t, EndpointDeleter>;
 }
 
 /// Where the participant with that GUID says that it runs; empty where it does not.
-[[nodiscard]] std::string place_of(const Participant& participant, const dds_guid_t& guid) {
+[[nodiscard]] std::string origin_of(const Participant& participant, const dds_guid_t& guid) {
   const Entity reader(
       "participants",
       dds_create_reader(participant.handle(), DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr));
   void* sample = nullptr;
   dds_sample_info_t info;
-  std::string place;
-  while (place.empty() && dds_take(reader.handle(), &sample, &info, 1, 1) == 1) {
+  std::string origin;
+  while (origin.empty() && dds_take(reader.handle(), &sample, &info, 1, 1) == 1) {
     const auto* other = static_cast<const dds_builtintopic_participant_t*>(sample);
     if (info.valid_data && std::memcmp(other->key.v, guid.v, sizeof guid.v) == 0) {
       const std::string process = property(other->qos, "__Pid");
       const std::string host = property(other->qos, "__Hostname");
-      if (!process.empty() && !host.empty()) place = "process " + process + " on host " + host;
+      if (!process.empty() && !host.empty()) origin = "process " + process + " on host " + host;
     }
     (void)dds_return_loan(reader.handle(), &sample, 1);
     sample = nullptr;
   }
-  return place;
+  return origin;
 }
 
 }  // namespace
@@ -104,9 +104,9 @@ std::string describe_writers(const Participant& participant, const char* topic) 
     const bool is_other = info.valid_data && std::strcmp(writer->topic_name, topic) == 0 &&
                           std::memcmp(writer->participant_key.v, own.v, sizeof own.v) != 0;
     if (is_other && ++count <= kNamed) {
-      const std::string place = place_of(participant, writer->participant_key);
+      const std::string origin = origin_of(participant, writer->participant_key);
       text += (text.empty() ? "" : ", ") +
-              (!place.empty() ? place : "participant " + in_hex(writer->participant_key));
+              (!origin.empty() ? origin : "participant " + in_hex(writer->participant_key));
     }
     (void)dds_return_loan(reader.handle(), &sample, 1);
     sample = nullptr;
@@ -125,8 +125,8 @@ std::string describe_source(const Participant& participant, std::int32_t reader,
 std::string describe_participant(const Participant& participant, const std::uint8_t* guid) {
   dds_guid_t key;
   std::memcpy(key.v, guid, sizeof key.v);
-  const std::string place = place_of(participant, key);
-  return !place.empty() ? place : "participant " + in_hex(key);
+  const std::string origin = origin_of(participant, key);
+  return !origin.empty() ? origin : "participant " + in_hex(key);
 }
 
 }  // namespace meridian::dds

@@ -14,8 +14,8 @@ namespace meridian::bench {
 [[nodiscard]] inline ClBlock block_on_path(std::uint64_t i) noexcept {
   constexpr std::uint64_t kBlocksOneWay = 84;
   const std::uint64_t phase = i % (2 * kBlocksOneWay);
-  const auto place = static_cast<double>(phase < kBlocksOneWay ? phase : 2 * kBlocksOneWay - phase);
-  const double turn = 2.0 * std::numbers::pi * place / static_cast<double>(kBlocksOneWay);
+  const auto step = static_cast<double>(phase < kBlocksOneWay ? phase : 2 * kBlocksOneWay - phase);
+  const double turn = 2.0 * std::numbers::pi * step / static_cast<double>(kBlocksOneWay);
   const double tilt = 0.27 + 0.11 * std::sin(0.37 * turn);
   ClBlock block;
   block.sequence = i;
@@ -23,7 +23,7 @@ namespace meridian::bench {
   block.kind = BlockKind::kCut;
   block.feed_meaning = FeedMeaning::kTip;
   block.feed = 20;
-  block.tip_mm = {40.0 * std::cos(turn), 40.0 * std::sin(turn), 0.02 * place};
+  block.tip_mm = {40.0 * std::cos(turn), 40.0 * std::sin(turn), 0.02 * step};
   block.axis = {std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt)};
   return block;
 }

@@ -79,17 +79,17 @@ class Setpoints {
     read(reader, what);
   }
 
-  [[nodiscard]] std::size_t size() const noexcept { return places_.size(); }
+  [[nodiscard]] std::size_t size() const noexcept { return samples_.size(); }
 
   /// Evaluates `n` setpoints, joints and velocities; returns a checksum of the joints.
   [[nodiscard]] std::uint64_t evaluate(int n) const noexcept {
-    JointVector q = places_.front().joints, velocity{};
+    JointVector q = samples_.front().joints, velocity{};
     std::uint64_t sum = 0;
     std::size_t at = 0;
-    for (int i = 0; i < n; ++i, at = at + 1 < places_.size() ? at + 1 : 0) {
-      const Place& place = places_[at];
-      const PathPiece& path = paths_[place.path];
-      const PathState state = state_at(place.time, place.t);
+    for (int i = 0; i < n; ++i, at = at + 1 < samples_.size() ? at + 1 : 0) {
+      const Sample& sample = samples_[at];
+      const PathPiece& path = paths_[sample.path];
+      const PathState state = state_at(sample.time, sample.t);
       const auto moving =
           joints_at(model_, path, Jet<1>::variable(std::clamp(state.s, 0.0, path.length)), q);
       for (std::size_t k = 0; k < static_cast<std::size_t>(model_.joint_count); ++k) {
@@ -103,19 +103,19 @@ class Setpoints {
 
   /// The bare inverse kinematics of the same poses.
   [[nodiscard]] std::uint64_t solve_poses(int n) const noexcept {
-    JointVector q = places_.front().joints;
+    JointVector q = samples_.front().joints;
     std::uint64_t sum = 0;
     std::size_t at = 0;
-    for (int i = 0; i < n; ++i, at = at + 1 < places_.size() ? at + 1 : 0) {
-      const Place& place = places_[at];
-      q = solve(model_, model_.tool_length_mm, place.pose, paths_[place.path].branch, q).q;
+    for (int i = 0; i < n; ++i, at = at + 1 < samples_.size() ? at + 1 : 0) {
+      const Sample& sample = samples_[at];
+      q = solve(model_, model_.tool_length_mm, sample.pose, paths_[sample.path].branch, q).q;
       sum += bits_of(q[3]);
     }
     return sum;
   }
 
  private:
-  struct Place {
+  struct Sample {
     TimePiece time;
     double t = 0;  ///< since the begin of the time piece
     std::size_t path = 0;
@@ -146,15 +146,15 @@ class Setpoints {
   void add(const TimePiece& time, const PathPiece& path) {
     if (paths_.empty() || paths_.back().index != path.index) paths_.push_back(path);
     const double s = std::clamp(state_at(time, t_).s, 0.0, path.length);
-    const JointVector& reference = places_.empty() ? path.joints_begin : places_.back().joints;
-    places_.push_back(
+    const JointVector& reference = samples_.empty() ? path.joints_begin : samples_.back().joints;
+    samples_.push_back(
         {time, t_, paths_.size() - 1, pose_at(path, s), joints_at(model_, path, s, reference).q});
   }
 
   MachineModel model_;
   JointVector begin_{};
   std::vector<PathPiece> paths_;
-  std::vector<Place> places_;
+  std::vector<Sample> samples_;
   double t_ = 0;
 };
 

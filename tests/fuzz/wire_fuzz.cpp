@@ -128,7 +128,7 @@ class Listeners {
 
  private:
   [[nodiscard]] stream::Surroundings around() const {
-    return {.now_ns = now_ns_, .free_places = 100, .actions = {.is_there = true}};
+    return {.now_ns = now_ns_, .free_slots = 100, .actions = {.is_there = true}};
   }
 
   /// A few blocks with a CRC that is right, so that the check looks at them.
@@ -292,9 +292,9 @@ class Listeners {
     if ((how & 0x40U) != 0) merge_.forget(source, now_ns_, (how & 0x20U) != 0);
     static_cast<void>(merge_.take(sample, source, now_ns_, (how & 0x80U) != 0));
     std::uint32_t bound = 0;
-    for (const interpolator::DriveSource& place : merge_.sources().places) {
-      require((bound & place.bound_mask) == 0, "a joint that two sources have");
-      bound |= place.bound_mask;
+    for (const interpolator::DriveSource& slot : merge_.sources().slots) {
+      require((bound & slot.bound_mask) == 0, "a joint that two sources have");
+      bound |= slot.bound_mask;
     }
     const Feedback& feedback = merge_.feedback();
     require((feedback.joint_mask >> kMaxJoints) == 0, "joints that no machine has");

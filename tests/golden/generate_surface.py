@@ -121,8 +121,8 @@ def number(x):
 
 
 def files():
-    places = [a + b for a in ("s", "du", "dv", "duu", "duv", "dvv", "n") for b in "xyz"]
-    columns = (["u", "v"] + places + ["k1", "k2", "lead", "tilt", "diameter", "corner"]
+    vectors = [a + b for a in ("s", "du", "dv", "duu", "duv", "dvv", "n") for b in "xyz"]
+    columns = (["u", "v"] + vectors + ["k1", "k2", "lead", "tilt", "diameter", "corner"]
                + ["i", "j", "k", "tipx", "tipy", "tipz"])
     comments = ["A rational surface of degree 3 x 2: point, derivatives, unit normal, principal curvatures (1/mm);",
                 "axis leant by lead and tilt (rad) from it, feed along u; tip of the cutter that touches. mm.",

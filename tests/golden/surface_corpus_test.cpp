@@ -17,7 +17,7 @@ using test::GoldenTable;
 
 const std::filesystem::path kFolder = test::shared_folder() / "kinematics" / "golden";
 
-constexpr double kPlace_mm = 1e-11;  // reach 1e3 mm, and what rounds in 16 products of the net
+constexpr double kPosition_mm = 1e-11;  // reach 1e3 mm, and what rounds in 16 products of the net
 constexpr double kUnit = 1e-13, kCurvature_per_mm = 1e-15, kAngle_rad = 1e-12;
 
 Vector3 vector_of(const GoldenTable& table, std::size_t row, const char* column) {
@@ -43,9 +43,9 @@ TEST_F(SurfaceCorpus, ReferencePatchHasItsPointsNormalsAndCurvatures) {
   for (std::size_t row = 0; row < table.size(); ++row) {
     SCOPED_TRACE(row);
     const auto line = static_cast<std::size_t>(table.number(row, "iu"));
-    const auto place = static_cast<std::size_t>(table.number(row, "iv"));
-    const Contact& c = path->lines[line].contacts[line % 2 == 0 ? place : 20 - place];
-    EXPECT_LT((c.pose.tip - vector_of(table, row, "Sx")).norm(), kPlace_mm);
+    const auto contact = static_cast<std::size_t>(table.number(row, "iv"));
+    const Contact& c = path->lines[line].contacts[line % 2 == 0 ? contact : 20 - contact];
+    EXPECT_LT((c.pose.tip - vector_of(table, row, "Sx")).norm(), kPosition_mm);
     EXPECT_LT((c.pose.axis - vector_of(table, row, "Nx")).norm(), kUnit);
     EXPECT_NEAR(c.shape.min_curvature, table.number(row, "k1"), kCurvature_per_mm);
     EXPECT_NEAR(c.shape.largest_curvature, table.number(row, "k2"), kCurvature_per_mm);
@@ -82,10 +82,10 @@ TEST_F(SurfaceCorpus, ToroidalCutterTouchesAsItShould) {
     rule.tilt_rad = table.number(row, "tilt");
     const auto c = find_contact(rule, table.number(row, "u"), table.number(row, "v"));
     ASSERT_TRUE(c);
-    EXPECT_LT((c->shape.at - vector_of(table, row, "Sx")).norm(), kPlace_mm);
+    EXPECT_LT((c->shape.at - vector_of(table, row, "Sx")).norm(), kPosition_mm);
     EXPECT_LT((c->shape.normal - vector_of(table, row, "Nx")).norm(), kUnit);
     EXPECT_LT((c->pose.axis - vector_of(table, row, "Kx")).norm(), kUnit);
-    EXPECT_LT((c->pose.tip - vector_of(table, row, "Px")).norm(), kPlace_mm);
+    EXPECT_LT((c->pose.tip - vector_of(table, row, "Px")).norm(), kPosition_mm);
   }
 }
 

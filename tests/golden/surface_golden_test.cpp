@@ -14,7 +14,7 @@ namespace {
 const std::string kFile = MERIDIAN_SOURCE_DIR "/tests/golden/surface_patch.csv";
 
 // Relative to the sizes at hand: places up to 1e2 mm, derivatives up to 1e3, of doubles.
-constexpr double kPlace_mm = 1e-12, kDerivative = 1e-10, kUnit = 1e-13, kCurvature = 1e-13;
+constexpr double kPosition_mm = 1e-12, kDerivative = 1e-10, kUnit = 1e-13, kCurvature = 1e-13;
 
 /// The numbers behind `# name: ` of the file, parted by commas or semicolons.
 std::vector<double> numbers_of(const std::string& name) {
@@ -54,7 +54,7 @@ TEST(SurfaceGolden, HasPointsAndBothOrdersOfDerivatives) {
   for (std::size_t row = 0; row < table.size(); ++row) {
     SCOPED_TRACE(row);
     const SurfacePoint s = surface.evaluate(table.number(row, "u"), table.number(row, "v"));
-    EXPECT_LT((s.at - vector_of(table, row, "sx")).norm(), kPlace_mm);
+    EXPECT_LT((s.at - vector_of(table, row, "sx")).norm(), kPosition_mm);
     EXPECT_LT((s.du - vector_of(table, row, "dux")).norm(), kDerivative);
     EXPECT_LT((s.dv - vector_of(table, row, "dvx")).norm(), kDerivative);
     EXPECT_LT((s.duu - vector_of(table, row, "duux")).norm(), 10 * kDerivative);
@@ -79,7 +79,7 @@ TEST(SurfaceGolden, HasNormalsCurvaturesAndTipsOfEveryCutter) {
     EXPECT_NEAR(c->shape.min_curvature, table.number(row, "k1"), kCurvature);
     EXPECT_NEAR(c->shape.largest_curvature, table.number(row, "k2"), kCurvature);
     EXPECT_LT((c->pose.axis - vector_of(table, row, "i")).norm(), kUnit);
-    EXPECT_LT((c->pose.tip - vector_of(table, row, "tipx")).norm(), kPlace_mm);
+    EXPECT_LT((c->pose.tip - vector_of(table, row, "tipx")).norm(), kPosition_mm);
   }
 }
 

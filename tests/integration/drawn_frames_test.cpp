@@ -22,9 +22,9 @@ constexpr const char* kPart = "PARTNO FRAMES\nUNITS/MM\nRAPID\nGOTO/12,-7,5,0.28
 const ToolPose kPose{Vector3(12, -7, 5), Vector3(0.28, 0.0, 0.96)};
 
 MachineModel placed(const MachineModel& machine, std::mt19937_64& engine) {
-  std::uniform_real_distribution<double> place(-900, 900), height(-800, 600), turn(-60, 60);
+  std::uniform_real_distribution<double> position(-900, 900), height(-800, 600), turn(-60, 60);
   RigidTransform frame;
-  frame.origin_mm = Vector3(place(engine), place(engine), height(engine));
+  frame.origin_mm = Vector3(position(engine), position(engine), height(engine));
   frame.rotation = config::rotation_from_deg(turn(engine), turn(engine), 3 * turn(engine));
   MachineModel out = machine;
   config::place_workpiece(out, frame);

@@ -162,12 +162,12 @@ Expected<inspect::Touch, std::string> touch_of_corner(const Corner& corner, cons
 TEST(DrawnProbing, OfATiltedCornerFindsItsFrame) {
   constexpr double kFrame_mm = 2e-3, kFrame_rad = 1e-5;
   std::mt19937_64 engine(20261129);
-  std::uniform_real_distribution<double> tilt(-3, 3), place(-30, 30);
+  std::uniform_real_distribution<double> tilt(-3, 3), position(-30, 30);
   for (int n = 0; n < 10; ++n) {
     SCOPED_TRACE(n);
     Corner corner{machine_of({"trunnion-ac", {}}, 1'000'000), {}, {}, {}};
     corner.rotation = config::rotation_from_deg(tilt(engine), tilt(engine), tilt(engine));
-    corner.origin = Vector3(place(engine), place(engine), place(engine));
+    corner.origin = Vector3(position(engine), position(engine), position(engine));
     corner.part.length_mm = corner.machine.tool_length_mm;
     corner.part.ball_mm = kBall_mm;
     drives::ProbedShape box;

@@ -114,19 +114,19 @@ Hosts::Hosts(Wire wire)
       must("-n " + space("switch") + " link set " + port(host) + " master br0");
     }
   }
-  Process::place_of = [this](const auto& arguments) { return place_of(arguments); };
+  Process::host_of = [this](const auto& arguments) { return host_of(arguments); };
   if (wire == Wire::kSpoilt) {
     wire_ = std::make_unique<Process>(
         std::vector<std::string>{"spoilt_wire", port(0), port(1), port(2), port(3)},
         folder_ / "wire.log", &wire_input_);
   }
-  const Place& viewer = places_[kViewer];
+  const HostEnvironment& viewer = environments_[kViewer];
   enter_network(viewer.network);
   ::setenv("CYCLONEDDS_URI", viewer.dds.c_str(), 1);
 }
 
 Hosts::~Hosts() {
-  Process::place_of = nullptr;
+  Process::host_of = nullptr;
   wire_.reset();
   ::unsetenv("CYCLONEDDS_URI");
   (void)::setns(home_, CLONE_NEWNET);
@@ -150,9 +150,10 @@ void Hosts::write_configuration() {
   }
   for (int host = 0; host < static_cast<int>(kNames.size()); ++host) {
     const bool has_realtime = host == kService || host == kDrives;
-    places_.push_back({.network = "/run/netns/" + space(kNames[static_cast<std::size_t>(host)]),
-                       .dds = "file://" + (has_realtime ? shipped : plain),
-                       .uptime_ahead_s = apart_s * host});
+    environments_.push_back(
+        {.network = "/run/netns/" + space(kNames[static_cast<std::size_t>(host)]),
+         .dds = "file://" + (has_realtime ? shipped : plain),
+         .uptime_ahead_s = apart_s * host});
   }
 }
 
@@ -171,10 +172,10 @@ void Hosts::connect(int host) {
   EXPECT_EQ(::setns(home_, CLONE_NEWNET), 0);
 }
 
-const Place* Hosts::place_of(const std::vector<std::string>& arguments) const {
+const HostEnvironment* Hosts::host_of(const std::vector<std::string>& arguments) const {
   if (arguments[0] == "spoilt_wire") return &switch_;
   const auto found = names_.find(arguments[arguments[0] == "meridian" ? 1 : 0]);
-  return &places_[found == names_.end() ? kViewer : found->second];
+  return &environments_[found == names_.end() ? kViewer : found->second];
 }
 
 void Hosts::cut(Name host) { set_port_state(host, "0"); }

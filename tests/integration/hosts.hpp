@@ -54,15 +54,15 @@ class Hosts {
   void connect(int host);
   void write_configuration();
   void set_port_state(Name host, const char* state) const;
-  [[nodiscard]] const Place* place_of(const std::vector<std::string>& arguments) const;
+  [[nodiscard]] const HostEnvironment* host_of(const std::vector<std::string>& arguments) const;
 
   std::string prefix_;
   std::filesystem::path folder_;
   int home_ = -1;  ///< network namespace of the test
-  std::vector<Place> places_;
+  std::vector<HostEnvironment> environments_;
   std::map<std::string, Name> names_{
       {"meridiand", kService}, {"drives", kDrives}, {"stream", kStation}};
-  Place switch_;
+  HostEnvironment switch_;
   InputPipe wire_input_;
   std::unique_ptr<Process> wire_;
 };

@@ -170,10 +170,10 @@ TEST_F(SeveralHosts, ServeTwoMachinesInOneDomainBesideEachOther) {
 
 TEST(HostOfAProgram, ThatIsNotThereEndsTheProgramInsteadOfRunningItBesideTheTest) {
   const Plant plant;
-  const Place nowhere{.network = "/run/netns/meridian-nowhere", .dds = {}};
-  Process::place_of = [&](const auto&) { return &nowhere; };
+  const HostEnvironment nowhere{.network = "/run/netns/meridian-nowhere", .dds = {}};
+  Process::host_of = [&](const auto&) { return &nowhere; };
   Process program({"meridian", "--version"}, plant.folder() / "nowhere.log");
-  Process::place_of = nullptr;
+  Process::host_of = nullptr;
   EXPECT_EQ(program.wait(milliseconds(5000)), 126) << program.said();
 }
 

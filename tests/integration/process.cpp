@@ -20,12 +20,12 @@ namespace meridian::test {
 namespace {
 
 /// In a child before it becomes its program.
-void go_to(const Place& place) {
-  const int network = ::open(place.network.c_str(), O_RDONLY | O_CLOEXEC);
+void go_to(const HostEnvironment& host) {
+  const int network = ::open(host.network.c_str(), O_RDONLY | O_CLOEXEC);
   const bool is_there = ::setns(network, CLONE_NEWNET) == 0 &&
-                        (place.uptime_ahead_s == 0 || set_uptime_ahead(place.uptime_ahead_s));
+                        (host.uptime_ahead_s == 0 || set_uptime_ahead(host.uptime_ahead_s));
   if (!is_there) ::_exit(126);
-  if (!place.dds.empty()) ::setenv("CYCLONEDDS_URI", place.dds.c_str(), 1);
+  if (!host.dds.empty()) ::setenv("CYCLONEDDS_URI", host.dds.c_str(), 1);
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ Process::Process(const std::vector<std::string>& arguments, std::filesystem::pat
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  const Place* const place = place_of ? place_of(arguments) : nullptr;
+  const HostEnvironment* const host = host_of ? host_of(arguments) : nullptr;
   pid_ = ::fork();
   if (pid_ != 0) return;
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -106,7 +106,7 @@ Process::Process(const std::vector<std::string>& arguments, std::filesystem::pat
   ::dup2(file, STDERR_FILENO);
   if (terminal != nullptr) ::dup2(terminal->process_end(), STDOUT_FILENO);
   if (input != nullptr) ::dup2(input->read_end(), STDIN_FILENO);
-  if (place != nullptr) go_to(*place);
+  if (host != nullptr) go_to(*host);
   ::execv(argv[0], argv.data());
   ::_exit(127);
 }

@@ -54,7 +54,7 @@ class Terminal {
 };
 
 /// A host that a program may run on instead of the test's (hosts.hpp).
-struct Place {
+struct HostEnvironment {
   std::string network;      ///< file of its network namespace
   std::string dds;          ///< CYCLONEDDS_URI there; empty: as for the test
   long uptime_ahead_s = 0;  ///< of its monotonic clock; not 0 only where set_uptime_ahead() works
@@ -69,7 +69,7 @@ class Process {
  public:
   /// Where a program with that command line runs; nullptr: beside the test. None: all do. One that
   /// cannot go there ends with exit code 126.
-  static inline std::function<const Place*(const std::vector<std::string>&)> place_of;
+  static inline std::function<const HostEnvironment*(const std::vector<std::string>&)> host_of;
 
   /// Starts build/bin/`arguments[0]`; what it says goes to `log`, its standard output to `terminal`
   /// where one is given. It reads `input` where one is given, else what the test reads.

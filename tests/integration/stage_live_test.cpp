@@ -41,7 +41,7 @@ void check_wire(const Tap& tap, record::RecordingReader& recording, const Machin
   while (recording.next(row).value_or(false)) {
     const auto at = tap.seen.find(row.cycle);
     if (at == tap.seen.end()) continue;
-    ASSERT_EQ(at->second.position, drives_at(model, row.places)) << "cycle " << row.cycle;
+    ASSERT_EQ(at->second.position, drives_at(model, row.positions)) << "cycle " << row.cycle;
     ++compared;
     moved += (row.flags & kSetpointMoving) != 0;
   }

@@ -56,7 +56,7 @@ def pattern_of(program, machine, folder):
 
 def jobs_of(arguments, folder):
     machines = sorted((ROOT / "deploy/machines").glob("*.toml"))
-    files = [file for place in arguments.files for file in sorted(pathlib.Path(place).rglob("*"))
+    files = [file for folder in arguments.files for file in sorted(pathlib.Path(folder).rglob("*"))
              if file.suffix.lower() in SUFFIXES]
     for machine in machines:
         pattern = pattern_of(arguments.old, machine, folder)

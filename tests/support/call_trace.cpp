@@ -42,22 +42,22 @@ std::string demangled(const char* symbol) {
 std::string frame_text(const void* frame) {
   // The call stands before the address it returns to, which may be in the next function.
   const auto* const call = static_cast<const std::byte*>(frame) - 1;
-  Dl_info place{};
+  Dl_info symbol_info{};
   const ElfW(Sym)* symbol = nullptr;
-  if (dladdr1(call, &place, reinterpret_cast<void**>(const_cast<ElfW(Sym)**>(&symbol)),
+  if (dladdr1(call, &symbol_info, reinterpret_cast<void**>(const_cast<ElfW(Sym)**>(&symbol)),
               RTLD_DL_SYMENT) == 0 ||
-      place.dli_fname == nullptr) {
+      symbol_info.dli_fname == nullptr) {
     return "?";
   }
   // The nearest symbol of a stripped file may be that of another function.
-  if (symbol != nullptr && place.dli_sname != nullptr &&
-      call < static_cast<const std::byte*>(place.dli_saddr) + symbol->st_size) {
-    return demangled(place.dli_sname);
+  if (symbol != nullptr && symbol_info.dli_sname != nullptr &&
+      call < static_cast<const std::byte*>(symbol_info.dli_saddr) + symbol->st_size) {
+    return demangled(symbol_info.dli_sname);
   }
   char offset[32];
   std::snprintf(offset, sizeof offset, "+0x%tx",
-                call - static_cast<const std::byte*>(place.dli_fbase));
-  return place.dli_fname + std::string(offset);
+                call - static_cast<const std::byte*>(symbol_info.dli_fbase));
+  return symbol_info.dli_fname + std::string(offset);
 }
 
 }  // namespace

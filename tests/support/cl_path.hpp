@@ -47,16 +47,16 @@ struct ClPath {
     const ToolPose at = path.at(share);
     return std::max((pose.tip - at.tip).norm() / tip_mm, angle_of(pose.axis, at.axis) / axis_rad);
   };
-  constexpr int kPlaces = 16;
+  constexpr int kSamples = 16;
   double best = 0, min = off(0);
-  for (int n = 1; n <= kPlaces; ++n) {
-    const double share = static_cast<double>(n) / kPlaces;
+  for (int n = 1; n <= kSamples; ++n) {
+    const double share = static_cast<double>(n) / kSamples;
     if (const double here = off(share); here < min) {
       min = here;
       best = share;
     }
   }
-  double low = std::max(0.0, best - 1.0 / kPlaces), high = std::min(1.0, best + 1.0 / kPlaces);
+  double low = std::max(0.0, best - 1.0 / kSamples), high = std::min(1.0, best + 1.0 / kSamples);
   for (int n = 0; n < 40 && high - low > 1e-9; ++n) {
     const double a = low + (high - low) / 3, b = high - (high - low) / 3;
     (off(a) < off(b) ? high : low) = off(a) < off(b) ? b : a;

@@ -41,20 +41,20 @@ template <class State>
     const State& first, const std::function<std::vector<Step<State>>(const State&)>& steps_of,
     const std::function<std::string(const State&)>& key_of,
     const std::function<std::string(const State&)>& complaint_of, std::size_t max) {
-  struct Place {
+  struct Node {
     std::size_t parent;
     std::string step;
   };
   Exploration found;
-  std::vector<Place> places{{0, ""}};
+  std::vector<Node> nodes{{0, ""}};
   std::map<std::string, std::size_t> seen{{key_of(first), 0}};
   std::deque<std::pair<std::size_t, State>> waiting;
   waiting.emplace_back(0, first);
   const auto is_wrong = [&](std::size_t at, const State& state) {
     found.complaint = complaint_of(state);
     if (found.complaint.empty()) return false;
-    for (; at != 0; at = places[at].parent) {
-      found.trail.insert(found.trail.begin(), places[at].step);
+    for (; at != 0; at = nodes[at].parent) {
+      found.trail.insert(found.trail.begin(), nodes[at].step);
     }
     return true;
   };
@@ -66,12 +66,12 @@ template <class State>
     waiting.pop_front();
     for (Step<State>& step : steps) {
       ++found.steps;
-      if (!seen.emplace(key_of(step.state), places.size()).second) continue;
-      places.push_back({from, std::move(step.name)});
-      found.states = places.size();
-      if (is_wrong(places.size() - 1, step.state)) return found;
-      waiting.emplace_back(places.size() - 1, std::move(step.state));
-      if (places.size() > max) return found;
+      if (!seen.emplace(key_of(step.state), nodes.size()).second) continue;
+      nodes.push_back({from, std::move(step.name)});
+      found.states = nodes.size();
+      if (is_wrong(nodes.size() - 1, step.state)) return found;
+      waiting.emplace_back(nodes.size() - 1, std::move(step.state));
+      if (nodes.size() > max) return found;
     }
   }
   found.is_complete = true;

@@ -46,10 +46,11 @@ MERIDIAN_NOT_WATCHED bool contains(const char* text, const char* part) {
 /// Whether the innermost frame outside of the sanitizer lies in a library that is not instrumented.
 MERIDIAN_NOT_WATCHED bool is_of_library(void* const* trace, std::size_t size) {
   for (std::size_t i = 0; i < size && trace[i] != nullptr; ++i) {
-    Dl_info place;
-    if (dladdr(trace[i], &place) == 0 || place.dli_fname == nullptr) return false;
-    if (contains(place.dli_fname, "libtsan.so")) continue;
-    return contains(place.dli_fname, "libddsc.so") || contains(place.dli_fname, "libspdlog.so");
+    Dl_info symbol_info;
+    if (dladdr(trace[i], &symbol_info) == 0 || symbol_info.dli_fname == nullptr) return false;
+    if (contains(symbol_info.dli_fname, "libtsan.so")) continue;
+    return contains(symbol_info.dli_fname, "libddsc.so") ||
+           contains(symbol_info.dli_fname, "libspdlog.so");
   }
   return false;
 }

@@ -42,9 +42,9 @@ class ToolSurvey {
 
   /// Looks at the next places.
   void go_on(const MachineModel& machine, const ToolPath& tool_path) noexcept {
-    constexpr int kPlaces = 2;
-    for (int n = 0; n < kPlaces && !is_over_; ++n) {
-      Place next;
+    constexpr int kSamples = 2;
+    for (int n = 0; n < kSamples && !is_over_; ++n) {
+      Sample next;
       const double s = (is_back_ ? -1 : 1) * (steps_ + 1) * step_;
       const bool goes_on = look(machine, tool_path, s, values_of(last_), next) &&
                            is_even(machine, last_, next) && stays_in(machine, last_, next) &&
@@ -93,11 +93,11 @@ class ToolSurvey {
   static constexpr int kSteps = 32;
   /// mm or rad; of joints that stand still or at an end of travel, less than kGuardOutside.
   static constexpr double kRounding = 5e-12;
-  using Place = Limited<Jet<3>>;
+  using Sample = Limited<Jet<3>>;
 
-  [[nodiscard]] static JointVector values_of(const Place& place) noexcept {
+  [[nodiscard]] static JointVector values_of(const Sample& sample) noexcept {
     JointVector q{};
-    for (std::size_t i = 0; i < q.size(); ++i) q[i] = value_of(place[i]);
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] = value_of(sample[i]);
     return q;
   }
 
@@ -116,10 +116,10 @@ class ToolSurvey {
 
   /// False where no joints are there.
   [[nodiscard]] static bool look(const MachineModel& machine, const ToolPath& tool_path, double s,
-                                 const JointVector& reference, Place& place) noexcept {
+                                 const JointVector& reference, Sample& sample) noexcept {
     const auto at = joints_on(machine, tool_path, Jet<3>::variable(s), reference);
     if (at.status != SolveStatus::kOk) return false;
-    place = limited_of(machine, at.q);
+    sample = limited_of(machine, at.q);
     return true;
   }
 
@@ -129,19 +129,19 @@ class ToolSurvey {
     return std::max({0.0, spec.limits.travel_min - at, at - spec.limits.travel_max});
   }
   /// How deep `at` is inside of `box`.
-  [[nodiscard]] static double inside_of(const KeepOutBox& box, const Place& at) noexcept {
+  [[nodiscard]] static double inside_of(const KeepOutBox& box, const Sample& at) noexcept {
     return std::max(0.0, depth_inside(box, values_of(at)));
   }
   /// The same of the angle of the stage.
-  [[nodiscard]] static double phi_out_of(const MachineModel& machine, const Place& at) noexcept {
+  [[nodiscard]] static double phi_out_of(const MachineModel& machine, const Sample& at) noexcept {
     const double phi = stage::carriage_of(machine.stage, values_of(at)).phi;
     return std::max(0.0, std::abs(phi) - machine.stage.phi_max_rad);
   }
 
   /// Whether a joint or drive that is outside of travel at `a` is farther in at
   /// its neighbour `b`.
-  [[nodiscard]] static bool comes_in(const MachineModel& machine, const Place& a,
-                                     const Place& b) noexcept {
+  [[nodiscard]] static bool comes_in(const MachineModel& machine, const Sample& a,
+                                     const Sample& b) noexcept {
     for (int i = 0; i < limited_count(machine); ++i) {
       const JointSpec& spec = limited_spec(machine, i);
       const auto n = static_cast<std::size_t>(i);
@@ -155,8 +155,8 @@ class ToolSurvey {
 
   /// Whether no joint or drive is farther outside of travel between `a` and its
   /// even neighbour `b`, and there, than at `a`.
-  [[nodiscard]] bool stays_in(const MachineModel& machine, const Place& a,
-                              const Place& b) const noexcept {
+  [[nodiscard]] bool stays_in(const MachineModel& machine, const Sample& a,
+                              const Sample& b) const noexcept {
     constexpr double kPeak = 0.75;  // of a parabola 0.5
     const double h = is_back_ ? -step_ : step_;
     for (int i = 0; i < limited_count(machine); ++i) {
@@ -174,8 +174,8 @@ class ToolSurvey {
   }
 
   /// The same of the keep-out boxes.
-  [[nodiscard, gnu::noinline]] bool keeps_out(const MachineModel& machine, const Place& a,
-                                              const Place& b) const noexcept {
+  [[nodiscard, gnu::noinline]] bool keeps_out(const MachineModel& machine, const Sample& a,
+                                              const Sample& b) const noexcept {
     constexpr double kBend = 0.25;  // of h² times the second derivative; of a parabola an eighth
     const JointVector from = values_of(a), to = values_of(b);
     JointVector off{};
@@ -195,7 +195,7 @@ class ToolSurvey {
   /// The tip over the base, with its derivatives along the way.
   [[nodiscard]] static std::array<Jet<3>, 3> tip_at(const MachineModel& machine,
                                                     double tool_length_mm,
-                                                    const Place& at) noexcept {
+                                                    const Sample& at) noexcept {
     Joints<Jet<3>> q;
     for (std::size_t i = 0; i < q.size(); ++i) q[i] = at[i];
     return tip_over_base(machine, tool_length_mm, q);
@@ -204,7 +204,7 @@ class ToolSurvey {
   /// Whether the tip is nowhere farther outside of its box between `a` and `b`, and there, than at
   /// `a`.
   [[nodiscard, gnu::noinline]] bool keeps_tip_in(const MachineModel& machine, double tool_length_mm,
-                                                 const Place& a, const Place& b) const noexcept {
+                                                 const Sample& a, const Sample& b) const noexcept {
     constexpr double kBend = 2;  // of the second derivative at both ends
     if (!machine.tip_box.is_set) return true;
     const std::array<Jet<3>, 3> from = tip_at(machine, tool_length_mm, a),
@@ -222,8 +222,8 @@ class ToolSurvey {
 
   /// Whether a tip that is outside of its box at `a` is farther in at its neighbour `b`.
   [[nodiscard, gnu::noinline]] static bool brings_tip_in(const MachineModel& machine,
-                                                         double tool_length_mm, const Place& a,
-                                                         const Place& b) noexcept {
+                                                         double tool_length_mm, const Sample& a,
+                                                         const Sample& b) noexcept {
     if (!machine.tip_box.is_set) return false;
     const std::array<Jet<3>, 3> from = tip_at(machine, tool_length_mm, a),
                                 to = tip_at(machine, tool_length_mm, b);
@@ -237,8 +237,8 @@ class ToolSurvey {
 
   /// Whether what is known at two neighbouring places explains how they differ:
   /// nothing steep hides between them.
-  [[nodiscard]] bool is_even(const MachineModel& machine, const Place& a,
-                             const Place& b) const noexcept {
+  [[nodiscard]] bool is_even(const MachineModel& machine, const Sample& a,
+                             const Sample& b) const noexcept {
     constexpr double kShare = 0.1, kEqual = 1e-9;
     const double h = is_back_ ? -step_ : step_;
     for (int i = 0; i < limited_count(machine); ++i) {
@@ -261,16 +261,16 @@ class ToolSurvey {
     return true;
   }
 
-  void keep(const MachineModel& machine, const Place& place) noexcept {
+  void keep(const MachineModel& machine, const Sample& sample) noexcept {
     constexpr double kBetween = 1.15, kStraight = 1e-11;
     for (int i = 0; i < limited_count(machine); ++i) {
       const auto n = static_cast<std::size_t>(i);
       const auto raise = [](double& max, double value) {
         if (std::abs(value) > kStraight) max = std::max(max, kBetween * std::abs(value));
       };
-      raise(slopes_[n].first, place[n].derivative(1));
-      raise(slopes_[n].second, place[n].derivative(2));
-      raise(slopes_[n].third, place[n].derivative(3));
+      raise(slopes_[n].first, sample[n].derivative(1));
+      raise(slopes_[n].second, sample[n].derivative(2));
+      raise(slopes_[n].third, sample[n].derivative(3));
     }
   }
 
@@ -278,7 +278,7 @@ class ToolSurvey {
   double first_in_ = 0, last_out_ = 0;  ///< the way that leads inwards ends there; 0: none does
   int steps_ = 0, closer_ = 0;
   bool is_back_ = false, is_over_ = true;
-  Place middle_{}, last_{};
+  Sample middle_{}, last_{};
   std::array<jog::Slopes, kMaxLimited> slopes_{};
 };
 

@@ -29,7 +29,7 @@ inline constexpr double kMaxStepRamp_s = 2;
 /// Places of the port that are gone over in one look, but for the tail that it ends in or behind.
 /// Where they last less than it takes to come to rest the rate goes down until they do; of dense
 /// smooth plans up to 1900 last as long as it takes at most.
-inline constexpr std::size_t kMaxPlacesAhead = 3072;
+inline constexpr std::size_t kMaxPathsAhead = 3072;
 /// Nearer to a rest of the plan than this a block ends there.
 inline constexpr double kSameEnd_mm = 5e-7;
 /// Far above the rounding of sums of plan time.
@@ -84,7 +84,7 @@ struct BlockEndAhead {
   const TimePiece* piece = c.reader.piece();
   double begin = -c.state.piece_time;
   while (piece != nullptr && begin <= max) {
-    if (ahead.places() >= kMaxPlacesAhead) {
+    if (ahead.slots() >= kMaxPathsAhead) {
       out.is_limited = true;
       break;
     }

@@ -48,7 +48,7 @@ class SpscRing {
 
   /// Producer: writes one item behind those staged before, unseen by the consumer; false if full.
   [[nodiscard]] bool stage(const T& item) noexcept {
-    if (free_places() == 0) return false;
+    if (free_slots() == 0) return false;
     slots_[staged_ & (N - 1)] = item;
     ++staged_;
     return true;
@@ -61,14 +61,14 @@ class SpscRing {
   void discard_staged() noexcept { staged_ = written_.load(std::memory_order_relaxed); }
 
   /// Producer: how many more items stage() will take now. The consumer can only raise it.
-  [[nodiscard]] std::size_t free_places() noexcept {
+  [[nodiscard]] std::size_t free_slots() noexcept {
     if (staged_ - seen_read_ == N) seen_read_ = read_.load(std::memory_order_acquire);
     return N - (staged_ - seen_read_);
   }
 
-  /// Producer: as free_places(), but asks the consumer's counter even where the last answer would
+  /// Producer: as free_slots(), but asks the consumer's counter even where the last answer would
   /// do; use it to check whether a whole window fits.
-  [[nodiscard]] std::size_t count_free_places() noexcept {
+  [[nodiscard]] std::size_t count_free_slots() noexcept {
     seen_read_ = read_.load(std::memory_order_acquire);
     return N - (staged_ - seen_read_);
   }

@@ -58,7 +58,7 @@ struct ChainKinematics {
   Vector3 a_to_b = Vector3::Zero();        ///< from there to the point of b, in the frame of a
   Vector3 b_to_gauge = Vector3::Zero();    ///< on to the gauge point at home, in the frame of b
   Vector3 home_axis_b = Vector3::UnitZ();  ///< k0 in the frame of b
-  Eigen::Matrix3d place =
+  Eigen::Matrix3d slide_inverse =
       Eigen::Matrix3d::Identity();  ///< inverse of the linear directions in the frame of a, or b
 
   Vector3 tilt_sin, tilt_cos;      ///< of the axis about b, from k0: dot products, eq. 4.11
@@ -242,8 +242,9 @@ template <class S>
   if (k.group >= 0) {
     const Vec3<S> displacement = displacement_of_slides(k, tool_length_mm, tip, a, b);
     for (int i = 0; i < 3; ++i) {
-      q[k.linear[i].joint] = k.place(i, 0) * displacement[0] + k.place(i, 1) * displacement[1] +
-                             k.place(i, 2) * displacement[2];
+      q[k.linear[i].joint] = k.slide_inverse(i, 0) * displacement[0] +
+                             k.slide_inverse(i, 1) * displacement[1] +
+                             k.slide_inverse(i, 2) * displacement[2];
     }
     return true;
   }

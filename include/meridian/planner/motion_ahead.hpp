@@ -21,12 +21,12 @@ class MotionAhead {
   /// The piece that follows, nullptr where the plan rests before it.
   [[nodiscard]] const TimePiece* next() noexcept {
     for (;;) {
-      const TimePiece* piece = reader_.look_ahead(++place_);
+      const TimePiece* piece = reader_.look_ahead(++slot_);
       if (piece == nullptr || piece->epoch != reader_.epoch()) return nullptr;
       if (is_in_tail_ && !(piece->is_tail && piece->window == window_)) return nullptr;
       if (piece->is_tail && !is_in_tail_) {
-        if (const std::size_t behind = reader_.find_behind_tail(place_); behind > 0) {
-          place_ = behind - 1;
+        if (const std::size_t behind = reader_.find_behind_tail(slot_); behind > 0) {
+          slot_ = behind - 1;
           continue;
         }
         is_in_tail_ = true;
@@ -38,14 +38,14 @@ class MotionAhead {
   }
 
   /// Places that were gone over so far, of tails that are skipped too.
-  [[nodiscard]] std::size_t places() const noexcept { return place_; }
+  [[nodiscard]] std::size_t slots() const noexcept { return slot_; }
 
   /// The begin of a tail that next() went into and the cycle has not yet; nullptr: none.
   [[nodiscard]] const TimePiece* tail() const noexcept { return tail_; }
 
  private:
   MotionReader& reader_;
-  std::size_t place_ = 0;
+  std::size_t slot_ = 0;
   const TimePiece* tail_ = nullptr;
   std::uint32_t window_ = 0;
   bool is_in_tail_ = false;

@@ -51,7 +51,7 @@ class MotionWriter {
 
   /// Whether that many pieces would fit now, and the plan is not farther ahead than it may be.
   [[nodiscard]] bool has_room(std::size_t paths, std::size_t times) noexcept {
-    return port_.paths.count_free_places() >= paths && port_.times.count_free_places() >= times &&
+    return port_.paths.count_free_slots() >= paths && port_.times.count_free_slots() >= times &&
            (horizon_s_ == kNoHorizon || ahead_s() < horizon_s_);
   }
 

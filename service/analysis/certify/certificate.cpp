@@ -19,7 +19,7 @@ constexpr std::array<const char*, 3> kKinds{"REFUTED", "UNDECIDED", "NOT JOINED"
   return share.joint < 0 ? "tip" : limited_spec(model, share.joint).name;
 }
 
-void append_place(std::string& out, const PlacedShare& at) {
+void append_location(std::string& out, const LocatedShare& at) {
   append(out, "line %u, block %llu, piece %u of window %u%s, %.6f s into it\n", at.line,
          static_cast<Count>(at.sequence), at.piece, at.window, at.is_tail ? ", its tail" : "",
          at.share.time_s);
@@ -40,7 +40,7 @@ std::string to_text(const Certificate& c, const MachineModel& model) {
   append(out, "  of %.3f s of motion and %.3f s of tails, %llu stretches, in %.2f s\n", c.plan_s,
          c.tails_s, static_cast<Count>(c.stretches), c.computing_s);
   for (std::size_t n = 0; n < kQuantities; ++n) {
-    const PlacedShare& bound = c.bound[n];
+    const LocatedShare& bound = c.bound[n];
     append(out, "  %-12s at most %.6f of the limit, %.6f used: %s, line %u\n", kNames[n],
            bound.share.share, c.attained[n].share.share, name_of(bound.share, model).c_str(),
            bound.line);
@@ -53,7 +53,7 @@ std::string to_text(const Certificate& c, const MachineModel& model) {
            kKinds[static_cast<std::size_t>(finding.kind)],
            kNames[static_cast<std::size_t>(share.quantity)], name_of(share, model).c_str(),
            share.share);
-    append_place(out, finding.at);
+    append_location(out, finding.at);
   }
   return out;
 }

@@ -13,7 +13,7 @@ namespace meridian::certify {
 
 /// A share of a limit and the piece that it is of. `window` and `piece` count from 0, the latter in
 /// its window.
-struct PlacedShare {
+struct LocatedShare {
   Share share;
   std::uint32_t window = 0, piece = 0, line = 0;
   std::uint64_t sequence = 0;
@@ -24,7 +24,7 @@ struct PlacedShare {
 struct CertificateFinding {
   enum class Kind : std::uint8_t { kRefuted, kUndecided, kBrokenJoin };
   Kind kind = Kind::kRefuted;
-  PlacedShare at;
+  LocatedShare at;
 };
 
 /// What was proved of a plan. Units: s, shares of limits.
@@ -34,13 +34,13 @@ struct Certificate {
   std::uint64_t pieces = 0;  ///< that move
   std::uint64_t refuted = 0, undecided = 0;
   std::uint64_t joins = 0, broken_joins = 0;
-  std::uint64_t stretches = 0;                 ///< that were enclosed
-  double plan_s = 0, tails_s = 0;              ///< of motion; of tails that bring windows to rest
-  std::array<PlacedShare, kQuantities> bound;  ///< no share is larger anywhere
-  std::array<PlacedShare, kQuantities> attained;  ///< so much is used somewhere
-  std::array<PlacedShare, 3> jump;                ///< of joins, by order of the difference
-  std::vector<CertificateFinding> findings;       ///< the first kMaxFindings
-  double computing_s = 0;                         ///< of this host
+  std::uint64_t stretches = 0;                  ///< that were enclosed
+  double plan_s = 0, tails_s = 0;               ///< of motion; of tails that bring windows to rest
+  std::array<LocatedShare, kQuantities> bound;  ///< no share is larger anywhere
+  std::array<LocatedShare, kQuantities> attained;  ///< so much is used somewhere
+  std::array<LocatedShare, 3> jump;                ///< of joins, by order of the difference
+  std::vector<CertificateFinding> findings;        ///< the first kMaxFindings
+  double computing_s = 0;                          ///< of this host
 
   [[nodiscard]] bool is_given() const noexcept {
     return refuted == 0 && undecided == 0 && broken_joins == 0;

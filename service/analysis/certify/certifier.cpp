@@ -10,19 +10,20 @@ Certifier::Certifier(const MachineModel& model)
 
 void Certifier::find(CertificateFinding::Kind kind, const Share& share) {
   if (certificate_.findings.size() == Certificate::kMaxFindings) return;
-  place_.share = share;
-  certificate_.findings.push_back({kind, place_});
+  location_.share = share;
+  certificate_.findings.push_back({kind, location_});
 }
 
 void Certifier::note(const PieceVerdict& verdict) {
   ++certificate_.pieces;
   certificate_.stretches += verdict.stretches;
   for (std::size_t n = 0; n < kQuantities; ++n) {
-    place_.share = verdict.bound[n];
-    if (!(place_.share.share <= certificate_.bound[n].share.share)) certificate_.bound[n] = place_;
-    place_.share = verdict.attained[n];
-    if (place_.share.share > certificate_.attained[n].share.share) {
-      certificate_.attained[n] = place_;
+    location_.share = verdict.bound[n];
+    if (!(location_.share.share <= certificate_.bound[n].share.share))
+      certificate_.bound[n] = location_;
+    location_.share = verdict.attained[n];
+    if (location_.share.share > certificate_.attained[n].share.share) {
+      certificate_.attained[n] = location_;
     }
   }
   if (verdict.status == Status::kRefuted) {
@@ -37,8 +38,9 @@ void Certifier::note(const PieceVerdict& verdict) {
 void Certifier::note(const JoinCheck::Verdict& verdict) {
   ++certificate_.joins;
   for (std::size_t n = 0; n < verdict.worst.size(); ++n) {
-    place_.share = verdict.worst[n];
-    if (!(place_.share.share <= certificate_.jump[n].share.share)) certificate_.jump[n] = place_;
+    location_.share = verdict.worst[n];
+    if (!(location_.share.share <= certificate_.jump[n].share.share))
+      certificate_.jump[n] = location_;
   }
   if (verdict.is_joined) return;
   ++certificate_.broken_joins;
@@ -59,20 +61,20 @@ void Certifier::begin_window(const TimePiece& piece) {
   has_begun_ = true;
   is_on_tail_ = false;
   epoch_ = piece.epoch;
-  place_.window = piece.window;
-  place_.piece = 0;
+  location_.window = piece.window;
+  location_.piece = 0;
 }
 
 void Certifier::add(const TimePiece& piece, const PathPiece* path) {
   const auto begin = std::chrono::steady_clock::now();
-  if (!has_begun_ || piece.epoch != epoch_ || piece.window != place_.window) {
+  if (!has_begun_ || piece.epoch != epoch_ || piece.window != location_.window) {
     begin_window(piece);
   } else {
-    ++place_.piece;
+    ++location_.piece;
   }
-  place_.line = piece.line;
-  place_.sequence = piece.sequence;
-  place_.is_tail = piece.is_tail;
+  location_.line = piece.line;
+  location_.sequence = piece.sequence;
+  location_.is_tail = piece.is_tail;
   if (piece.is_tail && !is_on_tail_) {
     tail_ = committed_;
     is_on_tail_ = true;

@@ -34,7 +34,7 @@ class Certifier {
   JoinCheck committed_;  ///< along the plan without tails
   JoinCheck tail_;       ///< along the tail of the window
   Certificate certificate_;
-  PlacedShare place_;  ///< of the piece that is looked at
+  LocatedShare location_;  ///< of the piece that is looked at
   std::uint16_t epoch_ = 0;
   bool has_begun_ = false, is_on_tail_ = false;
   std::uint64_t path_index_ = 0;

@@ -92,7 +92,7 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
   LimitView view;
   std::optional<Cause> cause;
   std::uint64_t block = record.sequence;
-  double place = place_;
+  double path_position = path_position_;
   const bool sets_off = is_moving && piece->is_from_rest && piece->window != window_;
   if (piece != nullptr) window_ = piece->window;
   if (sets_off || !is_moving) {
@@ -102,9 +102,9 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
   }
   if (is_moving) {
     const PathState p = state_at(*piece, std::min(piece_time, piece->duration));
-    place = find_place(*path, p.s, p.ds * record.rate);
+    path_position = find_path_position(*path, p.s, p.ds * record.rate);
     if (path->kind == PathKind::kSpline)
-      block = find_block(place, std::max(record.sequence, running_));
+      block = find_block(path_position, std::max(record.sequence, running_));
     if (path->motion == MotionKind::kUnwind) block = std::max(block, running_);
     const Open* const open = find(block);
     view = limits_.look(*path, *piece, piece_time, record.joints,
@@ -123,7 +123,8 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
     cause = Cause::kWaiting;
     is_on_span_ = false;
   }
-  share_out(block, place, view, view.speed * std::max(record.rate, 0.0), distance_mm, cause);
+  share_out(block, path_position, view, view.speed * std::max(record.rate, 0.0), distance_mm,
+            cause);
   if (take_cycle_) {
     const Open* const open = find(block);
     take_cycle_({period_s_, distance_mm, distance_mm / period_s_,
@@ -133,7 +134,7 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
   ++explanation_.cycles;
   explanation_.time_s = period_s_ * static_cast<double>(explanation_.cycles);
   running_ = block;
-  place_ = place;
+  path_position_ = path_position;
   close_blocks(running_);
 }
 
@@ -163,19 +164,19 @@ double Explainer::find_feed_share(const Open& open, double speed) {
   return open.share_per_s > 0 && length > 0 ? speed / (length * open.share_per_s) : 0;
 }
 
-double Explainer::find_place(const PathPiece& path, double s, double speed) {
-  if (path.motion == MotionKind::kUnwind) return place_;  // off the path, and back to it
-  const Open* const open = find(path.sequence);           // may be over: a span reaches over many
+double Explainer::find_path_position(const PathPiece& path, double s, double speed) {
+  if (path.motion == MotionKind::kUnwind) return path_position_;  // off the path, and back to it
+  const Open* const open = find(path.sequence);  // may be over: a span reaches over many
   if (path.kind != PathKind::kSpline) {
     is_on_span_ = false;
-    return open != nullptr ? open->path_end_mm : place_;
+    return open != nullptr ? open->path_end_mm : path_position_;
   }
   if (!is_on_span_) {
-    span_begin_ = open != nullptr ? open->path_begin_mm : place_;
+    span_begin_ = open != nullptr ? open->path_begin_mm : path_position_;
   } else if (path.index == span_index_ + 1) {
     span_begin_ += span_length_;
   } else if (path.index != span_index_) {  // several in one cycle
-    span_begin_ = place_ + speed * period_s_ - s;
+    span_begin_ = path_position_ + speed * period_s_ - s;
   }
   if (open != nullptr) {
     span_begin_ = std::clamp(span_begin_, open->path_begin_mm, open->path_end_mm);
@@ -186,12 +187,12 @@ double Explainer::find_place(const PathPiece& path, double s, double speed) {
   return span_begin_ + s;
 }
 
-std::uint64_t Explainer::find_block(double place, std::uint64_t from) {
+std::uint64_t Explainer::find_block(double path_position, std::uint64_t from) {
   while (true) {
     const Open* const next = find(from + 1);
     const Open* const here = find(from);
     if (next == nullptr || here == nullptr || !is_motion(next->block.kind)) return from;
-    if (place <= here->path_end_mm) return from;
+    if (path_position <= here->path_end_mm) return from;
     ++from;
   }
 }
@@ -209,14 +210,14 @@ void Explainer::give(Open& open, double time_s, const LimitView& view, double sp
   account(open, view.limit, cause, time_s, share);
 }
 
-void Explainer::share_out(std::uint64_t last, double place, const LimitView& view, double speed,
-                          double distance_mm, std::optional<Cause> cause) {
-  const double feed = distance_mm / period_s_, passed = place - place_;
+void Explainer::share_out(std::uint64_t last, double path_position, const LimitView& view,
+                          double speed, double distance_mm, std::optional<Cause> cause) {
+  const double feed = distance_mm / period_s_, passed = path_position - path_position_;
   double left_s = period_s_;
   for (std::uint64_t n = running_; is_on_span_ && passed > 0 && n < last; ++n) {
     Open* const open = find(n);
     if (open == nullptr) continue;
-    const double part = open->path_end_mm - std::max(place_, open->path_begin_mm);
+    const double part = open->path_end_mm - std::max(path_position_, open->path_begin_mm);
     const double time_s = std::clamp(period_s_ * part / passed, 0.0, left_s);
     if (time_s > kNothing_s) give(*open, time_s, view, speed, feed, cause);
     left_s -= time_s;
@@ -303,10 +304,10 @@ void Explainer::add_to_stretch(const ExplainedBlock& block) {
 void Explainer::close_stretch() {
   auto& worst = explanation_.worst;
   if (stretch_.blocks > 0 && stretch_.lost_s > 0) {
-    const auto place = std::find_if(
+    const auto path_position = std::find_if(
         worst.begin(), worst.end(),
         [this](const ExplainedStretch& other) { return stretch_.lost_s > other.lost_s; });
-    worst.insert(place, stretch_);
+    worst.insert(path_position, stretch_);
     if (worst.size() > Explanation::kMaxStretches) worst.pop_back();
   }
   stretch_ = {};

@@ -77,14 +77,14 @@ class Explainer {
   [[nodiscard]] static double find_feed_share(const Open& open, double speed);
   /// Where a cycle is on the paths of all blocks, added up. A span of the smooth path belongs to
   /// the block of its begin and may reach over many; its parameter counts as they do.
-  [[nodiscard]] double find_place(const PathPiece& path, double s, double speed);
+  [[nodiscard]] double find_path_position(const PathPiece& path, double s, double speed);
   /// The block that `place` is in, `from` or one behind it.
-  [[nodiscard]] std::uint64_t find_block(double place, std::uint64_t from);
+  [[nodiscard]] std::uint64_t find_block(double path_position, std::uint64_t from);
   /// Nothing: it lies ahead.
   [[nodiscard]] std::optional<Cause> cause_of(const LimitView& view, const CycleRecord& record);
   /// Shares a cycle among the blocks that it passed, up to `place` in block `last`. `cause`
   /// nothing: it lies ahead.
-  void share_out(std::uint64_t last, double place, const LimitView& view, double speed,
+  void share_out(std::uint64_t last, double path_position, const LimitView& view, double speed,
                  double distance_mm, std::optional<Cause> cause);
   void give(Open& open, double time_s, const LimitView& view, double speed, double feed_mm_per_s,
             std::optional<Cause> cause);
@@ -110,7 +110,7 @@ class Explainer {
   Explanation explanation_;
   ExplainedStretch stretch_;
   std::uint64_t running_ = 0;  ///< block of the last cycle
-  double place_ = 0;           ///< of the last cycle, see find_place()
+  double path_position_ = 0;   ///< of the last cycle, see find_path_position()
   bool is_on_span_ = false;    ///< the last cycle was on a span of the smooth path: this one
   std::uint64_t span_index_ = 0;
   double span_begin_ = 0, span_length_ = 0;

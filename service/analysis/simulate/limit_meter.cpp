@@ -10,8 +10,8 @@ namespace meridian::simulate {
 
 void LimitMeter::add(const CycleRecord& record, double tool_length_mm, double feed_mm_per_s,
                      LimitShares& shares) {
-  std::rotate(places_.begin(), places_.begin() + 1, places_.end());
-  places_.back() = limited_of(model_, record.joints, record.setpoint.position);
+  std::rotate(samples_.begin(), samples_.begin() + 1, samples_.end());
+  samples_.back() = limited_of(model_, record.joints, record.setpoint.position);
   known_ = record.setpoint.cycle == last_cycle_ + 1 ? std::min(known_ + 1, 4) : 1;
   last_cycle_ = record.setpoint.cycle;
   const Vector3 tip = forward(model_, tool_length_mm, record.joints).tip;
@@ -29,7 +29,7 @@ void LimitMeter::add(const CycleRecord& record, double tool_length_mm, double fe
   };
   if (feed_mm_per_s > 0) weigh(step.norm() / (period * feed_mm_per_s), shares.feed);
   for (int i = 0; i < limited_count(model_); ++i) {
-    const auto q = [&](int back) { return places_[3 - back][i]; };
+    const auto q = [&](int back) { return samples_[3 - back][i]; };
     const JointLimits& limits = limited_spec(model_, i).limits;
     auto& counts = shares.joints[i];
     weigh(std::abs(q(0) - q(1)) / (period * limits.velocity), counts[0]);

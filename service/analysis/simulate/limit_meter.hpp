@@ -23,7 +23,7 @@ class LimitMeter {
 
  private:
   const MachineModel& model_;
-  std::array<LimitedVector, 4> places_{};  ///< newest last
+  std::array<LimitedVector, 4> samples_{};  ///< newest last
   Vector3 tip_ = Vector3::Zero();
   int known_ = 0;
   std::uint64_t last_cycle_ = 0;

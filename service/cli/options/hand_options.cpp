@@ -37,9 +37,9 @@ constexpr std::array<const char*, kToolAxisCount> kToolAxes{"tool-x", "tool-y", 
   return std::nullopt;
 }
 
-[[nodiscard]] bool is_angle(const dds::MachineInfo& machine, int place) {
-  if (place >= kMaxJoints) return place - kMaxJoints >= static_cast<int>(ToolAxis::kTiltX);
-  return machine.joints[static_cast<std::size_t>(place)].is_rotary;
+[[nodiscard]] bool is_angle(const dds::MachineInfo& machine, int index) {
+  if (index >= kMaxJoints) return index - kMaxJoints >= static_cast<int>(ToolAxis::kTiltX);
+  return machine.joints[static_cast<std::size_t>(index)].is_rotary;
 }
 
 [[nodiscard]] std::optional<double> find_number(const std::string& text) {

@@ -72,7 +72,7 @@ void work_out_frames(ChainKinematics& k) {
   k.group = are_neighbours ? k.linear[0].group : -1;
   Eigen::Matrix3d directions;
   for (int i = 0; i < 3; ++i) directions.col(i) = k.linear[i].direction;
-  k.place = ((k.group == 2 ? frame_b : k.frame_a) * directions).inverse();
+  k.slide_inverse = ((k.group == 2 ? frame_b : k.frame_a) * directions).inverse();
 }
 
 void work_out_constants(ChainKinematics& k) {

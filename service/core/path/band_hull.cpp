@@ -115,17 +115,17 @@ Powers powers_of(const PoseQuartic& quartic) noexcept {
 }
 
 /// Squares of what is between the span at `x` and `place` of the polyline.
-Squares difference_at(const Powers& c, double x, const Vector6& place) noexcept {
+Squares difference_at(const Powers& c, double x, const Vector6& point) noexcept {
   Vector6 off;
   for (std::size_t d = 0; d < 6; ++d) {
-    off[d] = c[0][d] + x * (c[1][d] + x * (c[2][d] + x * (c[3][d] + x * c[4][d]))) - place[d];
+    off[d] = c[0][d] + x * (c[1][d] + x * (c[2][d] + x * (c[3][d] + x * c[4][d]))) - point[d];
   }
   return squares_of(off);
 }
 
 /// The bound by places: at vertices and ends the difference itself, between two of them, `width`
 /// apart, where the polyline is straight, at most width²/8 of the span's second derivative more.
-double bound_by_places(const BandPolyline& line, const PoseQuartic& quartic, double begin,
+double bound_by_points(const BandPolyline& line, const PoseQuartic& quartic, double begin,
                        double end, std::int64_t i) noexcept {
   const Powers powers = powers_of(quartic);
   const Squares bend = largest_bend(quartic, end - begin);
@@ -159,7 +159,7 @@ double bound_by_places(const BandPolyline& line, const PoseQuartic& quartic, dou
 double bound_deviation(const BandPolyline& line, const PoseQuartic& quartic, double begin,
                        double end, std::int64_t segment) noexcept {
   const std::int64_t i = line.segment_at(begin, segment);
-  const double bound = bound_by_places(line, quartic, begin, end, i);
+  const double bound = bound_by_points(line, quartic, begin, end, i);
   return bound < kQuick ? bound : bound_by_hull(line, quartic, begin, end, i);
 }
 

@@ -11,7 +11,7 @@ constexpr std::size_t kDegree = 4;
 constexpr std::size_t kSamplesPerSpan = 8;
 constexpr double kMinSpacing = 0.2;  // of a span, between vertices that are samples
 
-std::size_t place(std::int64_t i) noexcept { return static_cast<std::size_t>(i); }
+std::size_t index(std::int64_t i) noexcept { return static_cast<std::size_t>(i); }
 
 void add_product(Vector6& out, double factor, const Vector6& x) noexcept {
   for (std::size_t d = 0; d < 6; ++d) out[d] += factor * x[d];
@@ -46,7 +46,7 @@ PoseQuartic quartic_of(const BandKnots& knots, const ControlPoints& points,
 }
 
 BandSmoother::BandSmoother(const BandTuning& tuning) : tuning_(tuning) {
-  const std::size_t window = place(tuning.window), spans = window + kDegree;
+  const std::size_t window = index(tuning.window), spans = window + kDegree;
   points_.resize(window + 2 * kDegree);
   for (auto* list : {&rhs_, &fixed_, &safe_, &candidate_}) list->resize(window);
   band_.resize(window);
@@ -62,7 +62,7 @@ SmoothedWindow BandSmoother::smooth(const BandPolyline& line, const BandKnots& k
                                     std::int64_t count) noexcept {
   first_ = first;
   end_ = end;
-  size_ = place(end - first);
+  size_ = index(end - first);
   s0_ = std::max<std::int64_t>(first, kDegree);
   s1_ = std::min<std::int64_t>(end + kDegree, count);
   for (std::size_t d = 0; d < 6; ++d) {
@@ -109,7 +109,7 @@ void BandSmoother::collect_samples(const BandPolyline& line, const BandKnots& kn
 void BandSmoother::add_sample(const BandPolyline& line, const SpanKnots& t, std::int64_t s,
                               double u, std::int64_t segment) noexcept {
   Sample sample;
-  sample.at = place(s - first_);  // control point s - 4 has place s - first_
+  sample.at = index(s - first_);  // control point s - 4 has place s - first_
   find_basis(t, u, sample.n);
   const Vector6 y = line.at(u, segment);
   for (std::size_t d = 0; d < 6; ++d) sample.y[d] = y[d] * scale_[d];
@@ -139,7 +139,7 @@ void BandSmoother::build_matrix(const BandKnots& knots, std::int64_t count) noex
   for (std::int64_t i = std::max<std::int64_t>(0, first_ - 3); i < to; ++i) {
     const auto w = find_third_difference(
         {knots.greville(i), knots.greville(i + 1), knots.greville(i + 2), knots.greville(i + 3)});
-    const std::size_t p = place(i - first_ + static_cast<std::int64_t>(kDegree));
+    const std::size_t p = index(i - first_ + static_cast<std::int64_t>(kDegree));
     for (std::size_t k = 0; k < 4; ++k) {
       for (std::size_t j = 0; j < 4; ++j) add_entry(p + k, p + j, tuning_.smoothness * w[k] * w[j]);
     }

@@ -39,16 +39,16 @@ class EnablingWatch {
 
   /// Receive thread: a heartbeat of `source` came at `now_ns` (not 0).
   Beat beat(std::uint64_t source, dds::EnablingDevice device, std::int64_t now_ns) noexcept {
-    Place* place = find(source);
+    Slot* slot = find(source);
     if (device == dds::EnablingDevice::kPressed) {
-      if (place != nullptr) {
-        place->newest_ns.store(now_ns, std::memory_order_release);
+      if (slot != nullptr) {
+        slot->newest_ns.store(now_ns, std::memory_order_release);
         return Beat::kKnown;
       }
       return begin(source, now_ns) ? Beat::kBegun : Beat::kNoRoom;
     }
-    if (place == nullptr) return Beat::kKnown;
-    place->newest_ns.store(0, std::memory_order_release);
+    if (slot == nullptr) return Beat::kKnown;
+    slot->newest_ns.store(0, std::memory_order_release);
     if (device == dds::EnablingDevice::kLeaves) return Beat::kLeft;
     released_.fetch_add(1, std::memory_order_release);
     return Beat::kReleased;
@@ -60,13 +60,13 @@ class EnablingWatch {
     is_lost_ = released != released_seen_;
     released_seen_ = released;
     pressed_ = 0;
-    for (Place& place : places_) {
-      std::int64_t newest_ns = place.newest_ns.load(std::memory_order_acquire);
+    for (Slot& slot : slots_) {
+      std::int64_t newest_ns = slot.newest_ns.load(std::memory_order_acquire);
       if (newest_ns == 0) continue;
       if (now_ns - newest_ns <= timeout_ns_) {
         ++pressed_;
-      } else if (place.newest_ns.compare_exchange_strong(newest_ns, 0)) {
-        lost_source_.store(place.source.load(std::memory_order_relaxed), std::memory_order_relaxed);
+      } else if (slot.newest_ns.compare_exchange_strong(newest_ns, 0)) {
+        lost_source_.store(slot.source.load(std::memory_order_relaxed), std::memory_order_relaxed);
         losses_.fetch_add(1, std::memory_order_release);
         is_lost_ = true;
       }
@@ -89,25 +89,25 @@ class EnablingWatch {
   }
 
  private:
-  struct Place {
+  struct Slot {
     std::atomic<std::uint64_t> source{0};
     std::atomic<std::int64_t> newest_ns{0};  ///< 0: free
   };
 
-  [[nodiscard]] Place* find(std::uint64_t source) noexcept {
-    for (Place& place : places_) {
-      if (place.newest_ns.load(std::memory_order_relaxed) != 0 &&
-          place.source.load(std::memory_order_relaxed) == source) {
-        return &place;
+  [[nodiscard]] Slot* find(std::uint64_t source) noexcept {
+    for (Slot& slot : slots_) {
+      if (slot.newest_ns.load(std::memory_order_relaxed) != 0 &&
+          slot.source.load(std::memory_order_relaxed) == source) {
+        return &slot;
       }
     }
     return nullptr;
   }
   [[nodiscard]] bool begin(std::uint64_t source, std::int64_t now_ns) noexcept {
-    for (Place& place : places_) {
-      if (place.newest_ns.load(std::memory_order_relaxed) != 0) continue;
-      place.source.store(source, std::memory_order_relaxed);
-      place.newest_ns.store(now_ns, std::memory_order_release);
+    for (Slot& slot : slots_) {
+      if (slot.newest_ns.load(std::memory_order_relaxed) != 0) continue;
+      slot.source.store(source, std::memory_order_relaxed);
+      slot.newest_ns.store(now_ns, std::memory_order_release);
       return true;
     }
     return false;
@@ -115,7 +115,7 @@ class EnablingWatch {
 
   bool is_required_ = false;
   std::int64_t timeout_ns_ = 300'000'000;
-  std::array<Place, 8> places_{};
+  std::array<Slot, 8> slots_{};
   std::atomic<std::uint32_t> released_{0}, losses_{0};
   std::atomic<std::uint64_t> lost_source_{0};
   std::atomic<int> shown_{0};

@@ -60,7 +60,7 @@ void FeedbackListener::report_sources(const SourceReporter::Say& say) {
   sources_.refresh();
   const DriveSources& sources = sources_.latest();
   const std::int64_t now_ns = monotonic_ns();
-  for (const DriveSource& source : sources.places) {
+  for (const DriveSource& source : sources.slots) {
     const bool is_silent = now_ns - source.arrival_ns > FeedbackMerge::kSilence_ns;
     if (source.writer == 0 || !is_silent || reader_.has_source(source.writer)) continue;
     static_cast<void>(gone_.try_push(source.writer));

@@ -25,16 +25,16 @@ namespace {
 
 }  // namespace
 
-DriveSource* FeedbackMerge::find_place(std::uint64_t writer, std::uint32_t group,
-                                       std::int64_t now_ns) noexcept {
-  for (DriveSource& source : sources_.places) {
+DriveSource* FeedbackMerge::find_slot(std::uint64_t writer, std::uint32_t group,
+                                      std::int64_t now_ns) noexcept {
+  for (DriveSource& source : sources_.slots) {
     if (source.writer == writer && source.group == group) return &source;
   }
-  for (DriveSource& source : sources_.places) {
+  for (DriveSource& source : sources_.slots) {
     if (source.writer == 0) return &source;
   }
   DriveSource* idlest = nullptr;
-  for (DriveSource& source : sources_.places) {
+  for (DriveSource& source : sources_.slots) {
     const bool has_input =
         source.has_only_stop || source.is_emergency_stop || source.guard != GuardInput::kNone;
     const bool counts = source.bound_mask != 0 || has_input;
@@ -48,7 +48,7 @@ DriveSource* FeedbackMerge::find_place(std::uint64_t writer, std::uint32_t group
 
 /// Full of guards that are gone: that one is open counts from now on without saying whose.
 DriveSource* FeedbackMerge::find_lost_guard(std::int64_t now_ns) noexcept {
-  for (DriveSource& source : sources_.places) {
+  for (DriveSource& source : sources_.slots) {
     const bool is_missed =
         source.bound_mask != 0 || source.has_only_stop || source.is_emergency_stop;
     if (is_missed || source.guard == GuardInput::kNone || now_ns - source.arrival_ns <= kSilence_ns)
@@ -62,42 +62,42 @@ DriveSource* FeedbackMerge::find_lost_guard(std::int64_t now_ns) noexcept {
 bool FeedbackMerge::take(const dds::DriveFeedback& sample, std::uint64_t writer,
                          std::int64_t now_ns, bool may_hand_over) noexcept {
   if (writer == 0 || (sample.joint_mask >> kMaxJoints) != 0) return false;
-  DriveSource* const place = find_place(writer, sample.drive_group, now_ns);
-  if (place == nullptr) {
+  DriveSource* const slot = find_slot(writer, sample.drive_group, now_ns);
+  if (slot == nullptr) {
     sources_.is_full = true;
     if (sample.is_emergency_stop) stopped_ns_ = now_ns;
     if (sample.is_guard_open) opened_ns_ = now_ns;
     merge(now_ns);
     return true;
   }
-  const bool is_new = place->writer == 0;
-  if (!is_new && sample.sample <= place->sample) return false;
-  place->writer = writer;
-  place->group = sample.drive_group;
-  place->claimed_mask = sample.joint_mask & joints_;
-  place->sample = sample.sample;
-  place->cycle_seen = sample.cycle_seen;
-  place->master = sample.service_id;
-  if (is_new) place->first_ns = now_ns;
-  place->arrival_ns = now_ns;
-  place->has_only_stop = sample.joint_mask == 0;
-  place->is_emergency_stop = sample.is_emergency_stop;
+  const bool is_new = slot->writer == 0;
+  if (!is_new && sample.sample <= slot->sample) return false;
+  slot->writer = writer;
+  slot->group = sample.drive_group;
+  slot->claimed_mask = sample.joint_mask & joints_;
+  slot->sample = sample.sample;
+  slot->cycle_seen = sample.cycle_seen;
+  slot->master = sample.service_id;
+  if (is_new) slot->first_ns = now_ns;
+  slot->arrival_ns = now_ns;
+  slot->has_only_stop = sample.joint_mask == 0;
+  slot->is_emergency_stop = sample.is_emergency_stop;
   if (sample.is_guard_open) {
-    place->guard = GuardInput::kOpen;
-  } else if (place->guard == GuardInput::kOpen) {
-    place->guard = GuardInput::kShut;
+    slot->guard = GuardInput::kOpen;
+  } else if (slot->guard == GuardInput::kOpen) {
+    slot->guard = GuardInput::kShut;
   }
-  place->probe = sample.probe <= ProbeInput::kContact ? sample.probe : ProbeInput::kNone;
-  take_guard(*place, now_ns);
-  bind(*place, now_ns, may_hand_over);
-  take_joints(sample, place->joints());
+  slot->probe = sample.probe <= ProbeInput::kContact ? sample.probe : ProbeInput::kNone;
+  take_guard(*slot, now_ns);
+  bind(*slot, now_ns, may_hand_over);
+  take_joints(sample, slot->joints());
   merge(now_ns);
   return true;
 }
 
 void FeedbackMerge::bind(DriveSource& source, std::int64_t now_ns, bool may_hand_over) noexcept {
   std::uint32_t kept = 0;
-  for (DriveSource& other : sources_.places) {
+  for (DriveSource& other : sources_.slots) {
     if (&other == &source || other.bound_mask == 0) continue;
     const bool is_silent = now_ns - other.arrival_ns > kSilence_ns;
     const std::uint32_t reported = is_silent ? 0 : other.claimed_mask;
@@ -108,7 +108,7 @@ void FeedbackMerge::bind(DriveSource& source, std::int64_t now_ns, bool may_hand
 }
 
 void FeedbackMerge::take_guard(DriveSource& source, std::int64_t now_ns) noexcept {
-  for (DriveSource& other : sources_.places) {
+  for (DriveSource& other : sources_.slots) {
     const bool is_silent = now_ns - other.arrival_ns > kSilence_ns;
     // Only who came behind the silence: who spoke all the while is another one.
     const bool is_heir = other.group == source.group && source.first_ns > other.arrival_ns;
@@ -122,7 +122,7 @@ void FeedbackMerge::take_guard(DriveSource& source, std::int64_t now_ns) noexcep
 
 void FeedbackMerge::forget(std::uint64_t writer, std::int64_t now_ns, bool is_off) noexcept {
   bool has_more = false;
-  for (DriveSource& source : sources_.places) {
+  for (DriveSource& source : sources_.slots) {
     const bool is_missed = !is_off && (source.bound_mask != 0 || source.has_only_stop);
     if (source.writer == writer && !is_missed) source = remains_of(source);
     has_more = has_more || source.writer == 0;
@@ -176,10 +176,10 @@ void FeedbackMerge::merge(std::int64_t now_ns) noexcept {
   feedback_.probe = ProbeInput::kNone;
   const bool is_guard_heard = opened_ns_ != 0 && now_ns - opened_ns_ <= kSilence_ns;
   feedback_.is_guard_open = is_guard_lost_ || is_guard_heard;
-  for (const DriveSource& source : sources_.places) {
+  for (const DriveSource& source : sources_.slots) {
     if (source.writer == 0) continue;
     merge_inputs(source, now_ns);
-    for (const DriveSource& other : sources_.places) {
+    for (const DriveSource& other : sources_.slots) {
       if (other.writer == 0) continue;
       feedback_.contested_mask |= contested(source, other, now_ns, kSilence_ns);
     }

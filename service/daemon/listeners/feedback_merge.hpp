@@ -50,8 +50,8 @@ class FeedbackMerge {
 
  private:
   /// The place of this source, a free one, or one whose source is silent and takes part in nothing.
-  [[nodiscard]] DriveSource* find_place(std::uint64_t writer, std::uint32_t group,
-                                        std::int64_t now_ns) noexcept;
+  [[nodiscard]] DriveSource* find_slot(std::uint64_t writer, std::uint32_t group,
+                                       std::int64_t now_ns) noexcept;
   [[nodiscard]] DriveSource* find_lost_guard(std::int64_t now_ns) noexcept;
   void bind(DriveSource& source, std::int64_t now_ns, bool may_hand_over) noexcept;
   /// A guard of the group of `source` whose writer is silent is its from now on.

@@ -65,9 +65,9 @@ void Intake::run() noexcept {
 stream::Surroundings Intake::around() noexcept {
   const auto limit = static_cast<std::size_t>(service_.block_queue);
   const std::size_t used = ports_.blocks.size() + kReserve;
-  const std::size_t places = std::min(ports_.blocks.capacity(), limit);
+  const std::size_t slots = std::min(ports_.blocks.capacity(), limit);
   return {.now_ns = monotonic_ns(),
-          .free_places = places > used ? places - used : 0,
+          .free_slots = slots > used ? slots - used : 0,
           .actions = {.is_there = has_action_peer_,
                       .is_ignored = service_.auxiliary == config::AuxiliaryPolicy::kIgnore},
           .is_tool_known = !ports_.is_tool_changing.load(std::memory_order_relaxed)};

@@ -68,7 +68,7 @@ void SourceReporter::report_contest(Known& known, const DriveSource& source,
                                     const DriveSources& sources, std::int64_t now_ns,
                                     const Say& say) const {
   std::uint32_t mask = 0;
-  for (const DriveSource& owner : sources.places) {
+  for (const DriveSource& owner : sources.slots) {
     if (owner.writer == 0) continue;
     const std::uint32_t both = contested(owner, source, now_ns, FeedbackMerge::kSilence_ns);
     mask |= both;
@@ -98,7 +98,7 @@ void SourceReporter::report_guard(Known& known, const DriveSource& source, std::
 void SourceReporter::look(const DriveSources& sources, std::int64_t now_ns, const NameOf& name_of,
                           const CommandersOf& commanders, const Say& say) {
   for (Known& known : known_) known.is_here = false;
-  for (const DriveSource& source : sources.places) {
+  for (const DriveSource& source : sources.slots) {
     if (source.writer == 0) continue;
     Known& known = know(source, name_of, say);
     known.is_here = true;
@@ -110,7 +110,7 @@ void SourceReporter::look(const DriveSources& sources, std::int64_t now_ns, cons
     if (!known.is_here) say(Weight::kNews, known.name + " is gone");
   }
   std::erase_if(known_, [](const Known& known) { return !known.is_here; });
-  for (const DriveSource& source : sources.places) {
+  for (const DriveSource& source : sources.slots) {
     if (source.writer != 0)
       report_contest(know(source, name_of, say), source, sources, now_ns, say);
   }
@@ -118,7 +118,7 @@ void SourceReporter::look(const DriveSources& sources, std::int64_t now_ns, cons
     say(Weight::kError,
         fmt::format("more than {} sources report drives: of the others nothing counts but the stop "
                     "input and guard",
-                    sources.places.size()));
+                    sources.slots.size()));
   }
 }
 

@@ -38,7 +38,7 @@ struct DriveSource {
 
 /// Everybody who reports drives, for the messages to the operator.
 struct DriveSources {
-  std::array<DriveSource, 16> places{};
+  std::array<DriveSource, 16> slots{};
   bool is_full = false;  ///< somebody more found no place
 };
 static_assert(std::is_trivially_copyable_v<DriveSources>);
@@ -61,7 +61,7 @@ static_assert(std::is_trivially_copyable_v<DriveSources>);
   constexpr std::int64_t kRecent_ns = 1'000'000'000;
   std::uint64_t master = 0;
   bool is_agreed = true;
-  for (const DriveSource& source : sources.places) {
+  for (const DriveSource& source : sources.slots) {
     if (source.writer == 0 || source.joints() == 0 || source.master == 0) continue;
     if (now_ns - source.arrival_ns > kRecent_ns) continue;
     if (source.master == own) return own;

@@ -147,7 +147,7 @@ class Supervisor {
   [[nodiscard]] SpindleTool measured(SpindleTool tool) const noexcept;
   void send(const Pending& command);
   /// The place for a command that waits for its answer; nullptr: there is none.
-  [[nodiscard]] Pending* find_place(Verb verb) noexcept;
+  [[nodiscard]] Pending* find_slot(Verb verb) noexcept;
   /// The verb of the service's own while it ends.
   void send_own(Verb verb);
   [[nodiscard]] bool is_pending(Verb verb) const noexcept;

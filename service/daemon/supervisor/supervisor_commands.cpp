@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kResetDrives_ns = 300'000'000;
 /// Places for what waits to be answered that are kept for stops.
-constexpr std::ptrdiff_t kStopPlaces = 32;
+constexpr std::ptrdiff_t kStopSlots = 32;
 /// Commands at one look: however many come, the rest of this thread's work is done between them.
 constexpr int kMaxTaken = 1024;
 const std::string kDry = "dry run: ", kStarted = "start accepted; ",
@@ -110,8 +110,8 @@ bool Supervisor::is_within_quota(std::uint64_t participant, std::uint64_t source
 
 /// What is said where it cannot be answered is in the log; the machine stops all the same.
 void Supervisor::await_stop(const Pending& command) {
-  if (Pending* const place = find_place(command.request.verb)) {
-    *place = command;
+  if (Pending* const slot = find_slot(command.request.verb)) {
+    *slot = command;
     return;
   }
   reply(command, false, Refusal::kWrongState,
@@ -207,21 +207,21 @@ void Supervisor::send_delayed_resets() {
 
 void Supervisor::send(const Pending& command) {
   const dds::CommandRequest& request = command.request;
-  Pending* const place = find_place(request.verb);
-  const bool is_sent = place != nullptr && ports_.commands.stage({.request = command.key,
-                                                                  .verb = request.verb,
-                                                                  .argument = request.argument});
+  Pending* const slot = find_slot(request.verb);
+  const bool is_sent = slot != nullptr && ports_.commands.stage({.request = command.key,
+                                                                 .verb = request.verb,
+                                                                 .argument = request.argument});
   if (is_sent) {
-    *place = command;
+    *slot = command;
   } else {
     reply(command, false, Refusal::kWrongState, kTooMany);
   }
 }
 
-Supervisor::Pending* Supervisor::find_place(Verb verb) noexcept {
+Supervisor::Pending* Supervisor::find_slot(Verb verb) noexcept {
   const auto is_free = [](const Pending& pending) { return pending.key == 0; };
   const auto free = std::count_if(pending_.begin(), pending_.end(), is_free);
-  if (free <= (is_stop(verb) ? 0 : kStopPlaces)) return nullptr;
+  if (free <= (is_stop(verb) ? 0 : kStopSlots)) return nullptr;
   return &*std::find_if(pending_.begin(), pending_.end(), is_free);
 }
 

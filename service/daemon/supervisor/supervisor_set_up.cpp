@@ -177,16 +177,16 @@ void Supervisor::ask_cycle_for_set_up() {
       in_force_by(next_set_up_, model_, next_tools_, in_force_.change + 1));
   set_up_command_.key = ports_.commands.next_request();  // the cycle has had others meanwhile
   const Verb verb = set_up_command_.request.verb;
-  Pending* const place = find_place(verb);
+  Pending* const slot = find_slot(verb);
   const double argument = verb == Verb::kFrame ? next_set_up_.frames.active() : 0;
   const bool is_sent =
-      place != nullptr &&
+      slot != nullptr &&
       ports_.commands.stage({.request = set_up_command_.key, .verb = verb, .argument = argument});
   if (!is_sent) {
     return take_set_up_back(Refusal::kWrongState,
                             std::string(name_of(verb)) + " refused: too many commands");
   }
-  *place = set_up_command_;
+  *slot = set_up_command_;
   ports_.commands.publish();
   set_up_phase_ = SetUpPhase::kAtTheCycle;
 }

@@ -95,22 +95,22 @@ struct meridian_hal_shared {
 /// Memory order: the reader's first load of the lock acquires what was released with it, the fence
 /// keeps its copy in front of the second load; the writer's fence keeps its stores behind the odd
 /// value. One writer for each part. Proof: tests/unit/hal/shared_test.cpp.
-static inline void meridian_hal_write(uint32_t* lock, void* place, const void* value,
+static inline void meridian_hal_write(uint32_t* lock, void* part, const void* value,
                                       size_t bytes) {
   const uint32_t before = __atomic_load_n(lock, __ATOMIC_RELAXED) | 1u;
   __atomic_store_n(lock, before, __ATOMIC_RELAXED);
   __atomic_thread_fence(__ATOMIC_RELEASE);
-  memcpy(place, value, bytes);
+  memcpy(part, value, bytes);
   __atomic_store_n(lock, before + 1, __ATOMIC_RELEASE);
 }
 
 /// 0: `value` is torn, the writer was at it each of the four times (or died there); keep the last.
-static inline int meridian_hal_read(const uint32_t* lock, const void* place, void* value,
+static inline int meridian_hal_read(const uint32_t* lock, const void* part, void* value,
                                     size_t bytes) {
   for (int tries = 0; tries < 4; ++tries) {
     const uint32_t before = __atomic_load_n(lock, __ATOMIC_ACQUIRE);
     if ((before & 1u) != 0) continue;
-    memcpy(value, place, bytes);
+    memcpy(value, part, bytes);
     __atomic_thread_fence(__ATOMIC_ACQUIRE);
     if (__atomic_load_n(lock, __ATOMIC_RELAXED) == before) return 1;
   }

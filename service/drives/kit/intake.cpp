@@ -16,16 +16,16 @@ std::int64_t arrival_now_ns() noexcept {
 
 }  // namespace
 
-template <class Message, std::size_t kPlaces>
-Intake::Tap<Message, kPlaces>::Tap(dds::Participant& participant,
-                                   const std::atomic<std::uint64_t>& master)
+template <class Message, std::size_t kCapacity>
+Intake::Tap<Message, kCapacity>::Tap(dds::Participant& participant,
+                                     const std::atomic<std::uint64_t>& master)
     : master_(master),
       reader_(
           participant, [this](dds::Reader<Message>& reader) { on_data(reader); }, kWaiting) {}
 
 /// A ring that is full loses the sample: it is full where the drives' thread stands still.
-template <class Message, std::size_t kPlaces>
-void Intake::Tap<Message, kPlaces>::on_data(dds::Reader<Message>& reader) noexcept {
+template <class Message, std::size_t kCapacity>
+void Intake::Tap<Message, kCapacity>::on_data(dds::Reader<Message>& reader) noexcept {
   Arrived<Message> arrived;
   dds::SampleInfo info;
   while (reader.take(arrived.message, info)) {

@@ -45,7 +45,7 @@ class Intake {
     std::int64_t arrival_ns = 0;
   };
   /// One topic: reads on arrival.
-  template <class Message, std::size_t kPlaces>
+  template <class Message, std::size_t kCapacity>
   class Tap {
    public:
     Tap(dds::Participant& participant, const std::atomic<std::uint64_t>& master);
@@ -60,7 +60,7 @@ class Intake {
 
     const std::atomic<std::uint64_t>& master_;
     dds::Senders senders_;
-    SpscRing<Arrived<Message>, kPlaces> ring_;
+    SpscRing<Arrived<Message>, kCapacity> ring_;
     SpscRing<std::uint64_t, 64> foreign_;
     std::atomic<std::uint64_t> dropped_{0};
     dds::Reader<Message> reader_;  ///< last: it calls what uses the others

@@ -14,8 +14,8 @@ using drive::Drop;
 namespace {
 
 [[nodiscard]] HomingPlan plan_of(const std::vector<HomingPlan>& plans, int drive) {
-  const auto place = static_cast<std::size_t>(drive);
-  return place < plans.size() ? plans[place] : HomingPlan{};
+  const auto index = static_cast<std::size_t>(drive);
+  return index < plans.size() ? plans[index] : HomingPlan{};
 }
 
 [[nodiscard]] SimulatedServos servos_of(const MachineModel& model, const ServoLag& lag,

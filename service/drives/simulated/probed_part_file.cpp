@@ -6,18 +6,18 @@
 namespace meridian::drives {
 namespace {
 
-constexpr config::Range kPlace_mm{-1e5, 1e5}, kLength_mm{1e-3, 1e5}, kAngle_deg{-360, 360};
+constexpr config::Range kPosition_mm{-1e5, 1e5}, kLength_mm{1e-3, 1e5}, kAngle_deg{-360, 360};
 
 [[nodiscard]] ProbedShape read_shape(config::Section& section, ProbedShape::Kind kind) {
   ProbedShape shape;
   shape.kind = kind;
-  shape.origin_mm = to_vector(section.triple("origin_mm", kPlace_mm, "say where it lies"));
+  shape.origin_mm = to_vector(section.triple("origin_mm", kPosition_mm, "say where it lies"));
   if (kind != ProbedShape::Kind::kSphere) {
     const Array3 turn = section.triple_or("rotation_deg", {0, 0, 0}, kAngle_deg);
     shape.rotation = config::rotation_from_deg(turn[0], turn[1], turn[2]);
   }
   if (kind == ProbedShape::Kind::kBox) {
-    shape.size_mm = to_vector(section.triple("size_mm", kPlace_mm, "say how far it reaches"));
+    shape.size_mm = to_vector(section.triple("size_mm", kPosition_mm, "say how far it reaches"));
   } else {
     shape.radius_mm = section.number("radius_mm", kLength_mm);
   }

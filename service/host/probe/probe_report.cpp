@@ -35,7 +35,7 @@ struct Samples {
   return statistic.find("p99.9") != std::string::npos ? 1000 : 100;
 }
 
-[[nodiscard]] std::string place(int rate_hz, bool is_loaded) {
+[[nodiscard]] std::string condition(int rate_hz, bool is_loaded) {
   return std::to_string(rate_hz) + " Hz" + (is_loaded ? " under load" : "");
 }
 
@@ -57,8 +57,9 @@ struct Samples {
 }
 
 void append_measurement(std::string& out, const RateMeasurement& m) {
-  append(out, "\n%s; latency, us %17s %9s %9s %9s %9s %8s\n", place(m.rate_hz, m.is_loaded).c_str(),
-         "samples", "p50", "p99", "p99.9", "max", "stalls");
+  append(out, "\n%s; latency, us %17s %9s %9s %9s %9s %8s\n",
+         condition(m.rate_hz, m.is_loaded).c_str(), "samples", "p50", "p99", "p99.9", "max",
+         "stalls");
   for (const Shown& one : distributions(m)) {
     append(out, "  %-30s %9llu %9.1f %9.1f %9.1f %9.1f", one.name.c_str(),
            Count{one.histogram.count()}, percentile_us(one.histogram, 0.5),

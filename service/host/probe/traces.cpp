@@ -26,19 +26,19 @@ constexpr std::uintmax_t kWanted_bytes = 16'000'000;
 }
 
 /// Why nothing can be written below the folder `place`; empty: it can.
-[[nodiscard]] std::string hindrance(const fs::path& place) {
+[[nodiscard]] std::string hindrance(const fs::path& directory) {
   std::error_code failed;
-  if (!fs::is_directory(place, failed)) return place.string() + " is no folder";
+  if (!fs::is_directory(directory, failed)) return directory.string() + " is no folder";
   struct statvfs volume {};
-  if (::statvfs(place.c_str(), &volume) == 0 && (volume.f_flag & ST_RDONLY) != 0) {
-    return place.string() + " can only be read";
+  if (::statvfs(directory.c_str(), &volume) == 0 && (volume.f_flag & ST_RDONLY) != 0) {
+    return directory.string() + " can only be read";
   }
-  if (::access(place.c_str(), W_OK | X_OK) != 0) {
-    return "this user may not write into " + place.string();
+  if (::access(directory.c_str(), W_OK | X_OK) != 0) {
+    return "this user may not write into " + directory.string();
   }
-  const fs::space_info space = fs::space(place, failed);
+  const fs::space_info space = fs::space(directory, failed);
   if (failed || space.available >= kWanted_bytes) return "";
-  return place.string() + " has " + std::to_string(space.available / 1'000'000) + " MB left";
+  return directory.string() + " has " + std::to_string(space.available / 1'000'000) + " MB left";
 }
 
 [[nodiscard]] std::string report_kept(const fs::path& folder) {

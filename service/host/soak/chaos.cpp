@@ -35,9 +35,9 @@ Planned Chaos::next() {
   at_s_ += draw(random_, 0.5, 1.5) * every_s_;
   int total = 0;
   for (const int weight : kWeights) total += weight;
-  int place = static_cast<int>(draw(random_, 0, total));
+  int drawn = static_cast<int>(draw(random_, 0, total));
   std::size_t which = 0;
-  while (place >= kWeights[which]) place -= kWeights[which++];
+  while (drawn >= kWeights[which]) drawn -= kWeights[which++];
   Planned planned{static_cast<Mishap>(which), at_s_, 0, 0};
   if (planned.mishap == Mishap::kOverride) planned.value = draw(random_, 0.2, max_override_);
   if (planned.mishap == Mishap::kHold) planned.value = draw(random_, 0.1, 2);

@@ -32,7 +32,7 @@ void write_sample_program(const MachineModel& model, std::uint64_t seed,
   std::mt19937_64 random(seed);
   std::ofstream out(file);
   cl::ClWriter writer(out, "SOAK " + std::to_string(seed));
-  const JointVector place = inspect::trial_place(model);
+  const JointVector begin = inspect::trial_joints(model);
   const int blocks = 20 + static_cast<int>(pick(random, 0, 60));
   const double feed_mm_per_min = pick(random, 600, 4000);
   std::array<Swing, kMaxJoints> swings{};
@@ -40,11 +40,11 @@ void write_sample_program(const MachineModel& model, std::uint64_t seed,
     const JointSpec& spec = model.joints[joint];
     const double max = spec.is_rotary ? units::rad_from_deg(kLargestTurn_deg) : kLargestWay_mm;
     double amplitude = pick(random, 0.2, 1) * max;
-    if (!is_inside_travel(spec, place[joint] + amplitude, 0)) amplitude = -amplitude;
+    if (!is_inside_travel(spec, begin[joint] + amplitude, 0)) amplitude = -amplitude;
     swings[joint] = {amplitude, pick(random, 0.01, 0.06)};
   }
   for (int i = 0; i <= blocks; ++i) {
-    JointVector q = place;
+    JointVector q = begin;
     for (int joint = 0; joint < model.joint_count; ++joint) {
       // From the trial place to one side of it and back: 0 to 1 and never beyond.
       q[joint] += swings[joint].amplitude * 0.5 * (1 - std::cos(swings[joint].pace * i));

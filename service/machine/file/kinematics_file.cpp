@@ -39,9 +39,9 @@ Vector3 direction(Section& section, std::string_view key, const std::string& rem
   return v.normalized();
 }
 
-ChainJoint read_chain_joint(Section& section, int place, JointSpec& spec) {
+ChainJoint read_chain_joint(Section& section, int index, JointSpec& spec) {
   ChainJoint joint;
-  joint.joint = place;
+  joint.joint = index;
   joint.is_rotary = section.choice("kind", {"linear", "rotary"}) == 1;
   joint.is_table_side = section.choice("side", {"table", "head"}) == 0;
   joint.direction = direction(section, "direction",
@@ -69,15 +69,15 @@ void read_chain(Section& table, Section& joints, MachineModel& model) {
   std::array<bool, kCount> is_named{};
   for (std::size_t i = 0; i < kCount; ++i) {
     const auto found = std::find(machine_names.begin(), machine_names.end(), chain_names[i]);
-    const auto place = static_cast<std::size_t>(found - machine_names.begin());
-    if (place == kCount || is_named[place]) {
+    const auto index = static_cast<std::size_t>(found - machine_names.begin());
+    if (index == kCount || is_named[index]) {
       table.refuse(table.has("machine_order") ? "machine_order" : "chain",
                    "the five names of `chain`, each once", remedy);
     }
-    is_named[place] = true;
+    is_named[index] = true;
     Section section = joints.section(chain_names[i]);
-    JointSpec& spec = model.joints[place];
-    chain[i] = read_chain_joint(section, static_cast<int>(place), spec);
+    JointSpec& spec = model.joints[index];
+    chain[i] = read_chain_joint(section, static_cast<int>(index), spec);
     read_joint(section, spec);
   }
   const Vector3 axis = direction(table, "tool_axis", "give the tool axis at home, tip to spindle");

@@ -128,7 +128,7 @@ bool is_in_reach(const MachineModel& model, const ToolPose& pose) {
   return false;
 }
 
-JointVector trial_place(const MachineModel& model) {
+JointVector trial_joints(const MachineModel& model) {
   JointVector q{};
   for (int i = 0; i < model.joint_count; ++i) q[at(i)] = model.joints[at(i)].home;
   const ToolPose pose = forward(model, model.tool_length_mm, q);
@@ -146,10 +146,10 @@ Inspection inspect(const MachineModel& model) {
   for (int i = 0; i < model.joint_count; ++i) out.home[at(i)] = model.joints[at(i)].home;
   out.home_pose = forward(model, model.tool_length_mm, out.home);
   out.home_measure = measure(model, out.home);
-  out.trial_place = trial_place(model);
-  out.trial_pose = forward(model, model.tool_length_mm, out.trial_place);
+  out.trial_joints = trial_joints(model);
+  out.trial_pose = forward(model, model.tool_length_mm, out.trial_joints);
   for (int i = 0; i < model.joint_count; ++i) {
-    out.trials.push_back(try_joint(model, out.trial_place, i));
+    out.trials.push_back(try_joint(model, out.trial_joints, i));
   }
   out.is_origin_in_reach = is_in_reach(model, {Vector3::Zero(), Vector3::UnitZ()});
   if (out.is_origin_in_reach) {

@@ -25,7 +25,7 @@ struct Inspection {
   Skeleton skeleton;
   JointVector home{};
   ToolPose home_pose;
-  JointVector trial_place{};  ///< home, with the tilt off a pole that home would be on
+  JointVector trial_joints{};  ///< home, with the tilt off a pole that home would be on
   ToolPose trial_pose;
   std::vector<JointTrial> trials;
   double home_measure = 0;
@@ -43,7 +43,7 @@ struct Inspection {
 [[nodiscard]] bool is_in_reach(const MachineModel& model, const ToolPose& pose);
 
 /// Where the joints are tried: home, and off the pole if home is on it.
-[[nodiscard]] JointVector trial_place(const MachineModel& model);
+[[nodiscard]] JointVector trial_joints(const MachineModel& model);
 
 /// Computes all of it. Takes some tenths of a second. Proof:
 /// tests/unit/inspect/inspect_test.cpp.

@@ -78,7 +78,7 @@ std::string pose_text(const ToolPose& pose) {
 
 std::string trial_text(const Inspection& in, const MachineModel& model) {
   std::string out = "each joint alone, in the workpiece";
-  if (in.trial_place != in.home) {
+  if (in.trial_joints != in.home) {
     out += ", from " + pose_text(in.trial_pose) + " (home is on the pole)";
   }
   out += ":\n";

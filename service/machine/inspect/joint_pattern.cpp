@@ -29,16 +29,16 @@ ClBlock rapid_to(const MachineModel& model, const JointVector& q) {
 
 void run(const MachineModel& model, const Put& put,
          const std::function<void(const JointSpec&, double)>& announce) {
-  const JointVector place = trial_place(model);
-  put(rapid_to(model, place));
+  const JointVector begin = trial_joints(model);
+  put(rapid_to(model, begin));
   for (int joint = 0; joint < model.joint_count; ++joint) {
     const auto i = static_cast<std::size_t>(joint);
     const JointSpec& spec = model.joints[i];
     double stroke = spec.is_rotary ? units::rad_from_deg(kTurn_deg) : kStroke_mm;
-    if (!is_inside_travel(spec, place[i] + stroke, 0)) stroke = -stroke;
+    if (!is_inside_travel(spec, begin[i] + stroke, 0)) stroke = -stroke;
     announce(spec, stroke);
     for (int step = 1; step <= 2 * kSteps; ++step) {
-      JointVector q = place;
+      JointVector q = begin;
       q[i] += stroke * (step <= kSteps ? step : 2 * kSteps - step) / kSteps;
       put(rapid_to(model, q));
     }

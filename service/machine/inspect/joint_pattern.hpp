@@ -9,7 +9,7 @@
 
 namespace meridian::inspect {
 
-/// A CL program that moves every joint alone: from trial_place() in small steps forwards (10 mm or
+/// A CL program that moves every joint alone: from trial_joints() in small steps forwards (10 mm or
 /// 5 degrees, backwards where travel ends) and back, one joint after the other, in rapids. Straight
 /// blocks stand for a rotary joint's arcs, so the linear joints follow by some micrometres; joints
 /// that the pose does not show (the spin of a 6R) rest. Frame: W. Proof:

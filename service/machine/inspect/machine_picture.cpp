@@ -21,9 +21,9 @@ using plot::quoted;
 std::string label(const Vector3& at, const std::string& text) {
   std::string clean;
   for (const char c : text) clean += c == '"' || c == '\\' ? '_' : c;
-  char place[100];
-  std::snprintf(place, sizeof place, "%.6g %.6g %.6g \"", at[0], at[1], at[2]);
-  return place + clean + "\"\n";
+  char line[100];
+  std::snprintf(line, sizeof line, "%.6g %.6g %.6g \"", at[0], at[1], at[2]);
+  return line + clean + "\"\n";
 }
 
 /// What all views show: a cube around the machine.

@@ -40,39 +40,42 @@ std::vector<ProgramPose> few_of(const std::vector<ProgramPose>& poses) {
 }
 
 /// A frame as the search moves it: x, y, z and the turn.
-using Place = std::array<double, 4>;
+using Location = std::array<double, 4>;
 
 class Search {
  public:
   Search(const MachineModel& model, const PlacingBox& box, PlacingAim aim)
       : model_(model), box_(box), aim_(aim) {}
 
-  [[nodiscard]] Place run(const std::vector<ProgramPose>& poses, const std::vector<Place>& also) {
+  [[nodiscard]] Location run(const std::vector<ProgramPose>& poses,
+                             const std::vector<Location>& also) {
     struct Tried {
-      Place place;
+      Location location;
       double score;
     };
     std::vector<Tried> tried;
-    const auto add = [&](const Place& place) { tried.push_back({place, score(place, poses)}); };
+    const auto add = [&](const Location& location) {
+      tried.push_back({location, score(location, poses)});
+    };
     for (int n = 0; n < kSpread; ++n) {
-      Place place{};
+      Location location{};
       for (std::size_t i = 0; i < 3; ++i) {
         constexpr std::array kBases = {2, 3, 5};
-        place[i] = box_.low_mm[i] + spread(n, kBases[i]) * (box_.high_mm[i] - box_.low_mm[i]);
+        location[i] = box_.low_mm[i] + spread(n, kBases[i]) * (box_.high_mm[i] - box_.low_mm[i]);
       }
-      if (box_.may_turn) place[3] = 2 * std::numbers::pi * (spread(n, 7) - 0.5);
-      add(place);
+      if (box_.may_turn) location[3] = 2 * std::numbers::pi * (spread(n, 7) - 0.5);
+      add(location);
     }
-    for (const Place& place : also) add(place);
+    for (const Location& location : also) add(location);
     std::stable_sort(tried.begin(), tried.end(),
                      [](const Tried& a, const Tried& b) { return a.score > b.score; });
     Tried best = tried.front();
     for (std::size_t n = 0; n < std::min<std::size_t>(kBest, tried.size()); ++n) {
       Tried from = tried[n];
-      climb(from.place, from.score, poses);
+      climb(from.location, from.score, poses);
       if (from.score > best.score) best = from;
     }
-    return best.place;
+    return best.location;
   }
 
   /// What the search makes large, of a machine with its workpiece where it fits so: the speed where
@@ -87,15 +90,15 @@ class Search {
   [[nodiscard]] int frames() const noexcept { return frames_; }
 
  private:
-  [[nodiscard]] double score(const Place& place, const std::vector<ProgramPose>& poses) {
+  [[nodiscard]] double score(const Location& location, const std::vector<ProgramPose>& poses) {
     ++frames_;
-    const MachineModel there = placed(model_, {place[0], place[1], place[2]}, place[3]);
+    const MachineModel there = placed(model_, {location[0], location[1], location[2]}, location[3]);
     return worth(there, poses, fit_of(there, poses));
   }
 
   /// Steps along each direction as long as they gain, halved where none does.
-  void climb(Place& at, double& best, const std::vector<ProgramPose>& poses) {
-    Place step{};
+  void climb(Location& at, double& best, const std::vector<ProgramPose>& poses) {
+    Location step{};
     for (std::size_t i = 0; i < 3; ++i) step[i] = (box_.high_mm[i] - box_.low_mm[i]) / 8;
     step[3] = box_.may_turn ? std::numbers::pi / 8 : 0;
     const auto is_worth = [&] {
@@ -106,7 +109,7 @@ class Search {
       bool has_gained = false;
       for (std::size_t i = 0; i < step.size(); ++i) {
         for (const double by : {step[i], -step[i]}) {
-          Place next = at;
+          Location next = at;
           next[i] += by;
           if (i < 3) next[i] = std::clamp(next[i], box_.low_mm[i], box_.high_mm[i]);
           if (next == at) continue;
@@ -174,22 +177,22 @@ Placing find_placing(const MachineModel& model, const std::vector<ProgramPose>& 
   std::vector<ProgramPose> few = few_of(poses);
   Placing best;
   double best_worth = 0;
-  std::vector<Place> also;
+  std::vector<Location> also;
   for (int round = 0; round < kRounds; ++round) {
-    Place place = search.run(few, also);
-    for (std::size_t i = 0; i < 3; ++i) place[i] = std::round(place[i] * 1e3) * 1e-3;
-    const std::array<double, 3> origin = {place[0], place[1], place[2]};
-    const MachineModel there = placed(model, origin, place[3]);
+    Location location = search.run(few, also);
+    for (std::size_t i = 0; i < 3; ++i) location[i] = std::round(location[i] * 1e3) * 1e-3;
+    const std::array<double, 3> origin = {location[0], location[1], location[2]};
+    const MachineModel there = placed(model, origin, location[3]);
     const Fit fit = fit_of(there, poses);
     const double worth = search.worth(there, poses, fit);
     if (round == 0 || worth > best_worth) {
-      best = {origin, place[3], fit, 0};
+      best = {origin, location[3], fit, 0};
       best_worth = worth;
     }
     // The few had the margin that all have: no pose between them is worse.
     const Fit seen = fit_of(there, few);
     if (fit.margin > seen.margin - 1e-3) break;
-    also.push_back(place);
+    also.push_back(location);
     for (const ProgramPose& at : poses) {
       if (at.line == fit.line) few.push_back(at);
     }

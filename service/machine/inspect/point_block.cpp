@@ -43,17 +43,17 @@ void print_four_views(std::FILE* out, const Vector3& middle, double half,
   std::fputs(plot("splot", View{}).c_str(), out);
   std::fputs("unset key\nset size ratio -1\nset grid lc '#e4e4e4'\n", out);
   struct Sheet {
-    const char *title, *place;
+    const char *title, *position;
     View view;
   };
   constexpr Sheet kSheets[] = {{"front", "0.5,0.49", {false, 0, 2}},
                                {"side", "0.5,0.0", {false, 1, 2}},
                                {"top", "0.0,0.0", {false, 0, 1}}};
-  for (const auto& [title, place, view] : kSheets) {
+  for (const auto& [title, position, view] : kSheets) {
     std::fprintf(out,
                  "set origin %s\nset size 0.49,0.47\nset title '%s'\nset xlabel '%c, mm'\n"
                  "set ylabel '%c, mm'\n",
-                 place, title, "xyz"[view.across], "xyz"[view.up]);
+                 position, title, "xyz"[view.across], "xyz"[view.up]);
     range('x', view.across);
     range('y', view.up);
     std::fputs(plot("plot", view).c_str(), out);

@@ -42,7 +42,7 @@ std::string listed(const std::vector<std::string>& names) {
 class Columns {
  public:
   explicit Columns(const std::vector<std::string>& wanted) : wanted_(wanted) {
-    for (std::size_t i = 0; i < wanted.size(); ++i) places_.push_back(i);
+    for (std::size_t i = 0; i < wanted.size(); ++i) columns_.push_back(i);
   }
 
   /// Takes a row of names; empty, or what is wrong with it.
@@ -52,7 +52,7 @@ class Columns {
       if (at == names.end()) {
         return "no column " + wanted_[i] + "; needed are " + listed(wanted_);
       }
-      places_[i] = static_cast<std::size_t>(at - names.begin());
+      columns_[i] = static_cast<std::size_t>(at - names.begin());
     }
     has_names_ = true;
     width_ = names.size();
@@ -65,7 +65,7 @@ class Columns {
       return std::to_string(cells.size()) + " values, " + std::to_string(width) + " are needed" +
              (has_names_ ? "" : ": " + listed(wanted_));
     }
-    for (const std::size_t at : places_) {
+    for (const std::size_t at : columns_) {
       const auto value = number_of(cells[at]);
       if (!value) return "'" + cells[at].substr(0, 24) + "' is no finite number";
       out.push_back(*value);
@@ -75,7 +75,7 @@ class Columns {
 
  private:
   const std::vector<std::string>& wanted_;
-  std::vector<std::size_t> places_;
+  std::vector<std::size_t> columns_;
   std::size_t width_ = 0;
   bool has_names_ = false;
 };

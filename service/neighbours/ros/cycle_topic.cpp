@@ -38,7 +38,7 @@ void CycleTopic::write(const record::RecordingRow& row, const DerivedRow& derive
 
 void CycleTopic::put_positions(const record::RecordingRow& row, const Pose<double>& pose) {
   for (int i = 0; i < limited_count(model_); ++i) {
-    const double value = row.places[static_cast<std::size_t>(i)];
+    const double value = row.positions[static_cast<std::size_t>(i)];
     message_.put(rounded(in_ros_units(limited_spec(model_, i), value), kPositionPlaces));
   }
   for (const double value : pose.tip) message_.put(rounded(m_from_mm(value), kPositionPlaces));

@@ -26,7 +26,7 @@ void DerivedRow::add(const record::RecordingRow& row) {
   turn_rad_per_s_ = is_next ? angle(pose.axis, pose_.axis) * rate : 0;
   pose_ = pose;
   const bool is_fault = (row.flags & kSetpointFaultStop) != 0;
-  shares_.add(row.places, is_next && is_leading(row.flags),
+  shares_.add(row.positions, is_next && is_leading(row.flags),
               is_fault ? scene::Bounds::kOfFaultStop : scene::Bounds::kOfMotion);
   has_row_ = true;
   cycle_ = row.cycle;

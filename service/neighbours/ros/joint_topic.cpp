@@ -13,7 +13,7 @@ JointTopic::JointTopic(mcap::Writer& writer, const MachineModel& model, const Co
 
 void JointTopic::write(const record::RecordingRow& row) {
   if (!pace_.is_due(row.due_ns)) return;
-  put_joint_state(message_, row.due_ns, model_, row.places,
+  put_joint_state(message_, row.due_ns, model_, row.positions,
                   contents_.has_velocity ? &row.velocity : nullptr);
   (void)writer_.write(channel_, static_cast<std::uint64_t>(row.due_ns), message_.bytes());
 }

@@ -20,7 +20,7 @@ constexpr std::int64_t kLongestWait_ns = 1'000'000'000;
   row.epoch = setpoint.epoch;
   row.flags = setpoint.flags;
   row.joints = joints_of(model, setpoint.position);
-  row.places = limited_of(model, row.joints, setpoint.position);
+  row.positions = limited_of(model, row.joints, setpoint.position);
   row.velocity =
       limited_of(model, joint_velocity_of(model, row.joints, setpoint.velocity), setpoint.velocity);
   row.feedback = seen.feedback;

@@ -104,7 +104,7 @@ cl::Outcome change_tool(State& s, const Line& line) {
   }
   s.cl.tool = tool;
   s.cl.path.act(BlockKind::kTool, ActionKind::kToolChange, tool, line.number);
-  if (s.modes.control == Control::kNone) s.place.tip[2].reset();
+  if (s.modes.control == Control::kNone) s.position.tip[2].reset();
   const bool is_siemens = s.modes.language == Language::kSiemens;  // a new tool comes with its D1
   if (is_siemens && s.modes.control == Control::kNone) s.modes.control = Control::kLength;
   return {};

@@ -77,8 +77,8 @@ Expected<int, cl::Refusal> turns_of(const Line& line) {
 
 cl::Outcome arc_to(State& s, const Line& line, const Target& to) {
   const bool is_off_tip = !holds_tip(s.modes.control) &&
-                          (to.place.is_turned() || s.frames.tilt == Tilt::kDefined) &&
-                          !is_across_plane(s, to.place);
+                          (to.position.is_turned() || s.frames.tilt == Tilt::kDefined) &&
+                          !is_across_plane(s, to.position);
   if (to.turns || is_off_tip) {
     return refuse(
         "an arc in whose block rotary axes turn, or are turned without tool-centre "
@@ -96,8 +96,8 @@ cl::Outcome arc_to(State& s, const Line& line, const Target& to) {
   if (!feed) return tl::make_unexpected(feed.error());
   WrittenArc arc;
   for (std::size_t k = 0; k < 3; ++k) {
-    arc.begin[static_cast<Eigen::Index>(k)] = *s.place.tip[k];
-    arc.end[static_cast<Eigen::Index>(k)] = *to.place.tip[k];
+    arc.begin[static_cast<Eigen::Index>(k)] = *s.position.tip[k];
+    arc.end[static_cast<Eigen::Index>(k)] = *to.position.tip[k];
   }
   arc.normal = Vector3::Unit(s.modes.plane) * (s.modes.motion == Motion::kClockwise ? -1 : 1);
   const Word* const radius = line.find(s.modes.language == Language::kSiemens ? "CR" : "R");
@@ -117,7 +117,7 @@ cl::Outcome arc_to(State& s, const Line& line, const Target& to) {
   if (auto done = s.cl.path.arc_to(path, end->tip, end->axis, *feed, line.number); !done) {
     return done;
   }
-  s.place = to.place;
+  s.position = to.position;
   s.in_w = {in_w(s, arc.end), to.axis};
   return {};
 }

@@ -23,7 +23,7 @@ struct OneShot {
     kDwell,
     kHome,
     kReference,
-    kMachinePlace,
+    kMachinePosition,
     kPlaneTilt,
     kPlaneFollow,
     kLocalZero,
@@ -66,8 +66,8 @@ std::optional<OneShot::Kind> one_shot_of(GKind kind) {
       return OneShot::Kind::kHome;
     case GKind::kReference:
       return OneShot::Kind::kReference;
-    case GKind::kMachinePlace:
-      return OneShot::Kind::kMachinePlace;
+    case GKind::kMachinePosition:
+      return OneShot::Kind::kMachinePosition;
     case GKind::kPlaneTilt:
       return OneShot::Kind::kPlaneTilt;
     case GKind::kPlaneFollow:
@@ -147,7 +147,7 @@ cl::Outcome check_kinds(const GRow& row, std::optional<GKind>& motion_kind,
                        row.kind == GKind::kPlaneFollow || row.kind == GKind::kLocalZero;
   if (is_shot && motion_kind)
     return refuse("two G codes of one group in a block", "write one block for each");
-  if (is_shot || row.kind == GKind::kMachinePlace) motion_kind = row.kind;
+  if (is_shot || row.kind == GKind::kMachinePosition) motion_kind = row.kind;
   return {};
 }
 
@@ -215,11 +215,11 @@ cl::Outcome run_motion(State& s, const Line& line, OneShot shot) {
     case OneShot::Kind::kDwell:
       return dwell(s, line);
     case OneShot::Kind::kHome:
-      return move_to_machine_place(s, line, MachinePlace::kHome);
+      return move_to_machine_position(s, line, MachinePosition::kHome);
     case OneShot::Kind::kReference:
-      return move_to_machine_place(s, line, MachinePlace::kReference);
-    case OneShot::Kind::kMachinePlace:
-      return move_to_machine_place(s, line, MachinePlace::kAsWritten);
+      return move_to_machine_position(s, line, MachinePosition::kReference);
+    case OneShot::Kind::kMachinePosition:
+      return move_to_machine_position(s, line, MachinePosition::kAsWritten);
     case OneShot::Kind::kPlaneTilt:
       return define_plane(s, line);
     case OneShot::Kind::kPlaneFollow:
@@ -276,7 +276,7 @@ cl::Outcome run_block(State& s, const Line& line) {
   const auto names = take_names(s, line);
   if (!names) return tl::make_unexpected(names.error());
   if (names->has_frame) shot.kind = OneShot::Kind::kNothing;
-  if (names->has_machine_place && moves(line)) shot.kind = OneShot::Kind::kMachinePlace;
+  if (names->has_machine_position && moves(line)) shot.kind = OneShot::Kind::kMachinePosition;
   const bool is_dwell = shot.kind == OneShot::Kind::kDwell;
   if (is_dwell && s.modes.language == Language::kSiemens) return siemens_dwell(s, line);
   if (auto done = act_before(s, line); !done) return done;

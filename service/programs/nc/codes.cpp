@@ -68,7 +68,7 @@ constexpr std::array kG = std::to_array<GRow>({
     {510, kRefused, 0, "scaling", kByCam},
     {511, kRefused, 0, "mirroring", kByCam},
     {520, kLocalZero},
-    {530, kMachinePlace},
+    {530, kMachinePosition},
     {531, kPlaneFollow},
     {536, kPlaneFollow},
     {540, kWorkOffset},

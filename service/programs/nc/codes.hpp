@@ -20,16 +20,16 @@ enum class GKind : std::uint8_t {
   kCycle,       ///< `value`: 81 of G81, 0 ends it
   kReturn,      ///< of cycles; `value`: 1 to R
   kDwell,
-  kHome,           ///< G28
-  kReference,      ///< G30: a position of the machine file
-  kMachinePlace,   ///< G53
-  kPlaneTilt,      ///< G68.2
-  kPlaneFollow,    ///< G53.1: the rotary axes follow it
-  kPlaneOff,       ///< G69
-  kLocalZero,      ///< G52
-  kDynamicOffset,  ///< of Haas; `value`: 1 for G254, 0 for G255
-  kNothing,        ///< says what holds anyway, or how the control smooths
-  kSetting,        ///< the same, with words of its own (G5.1 Q1)
+  kHome,             ///< G28
+  kReference,        ///< G30: a position of the machine file
+  kMachinePosition,  ///< G53
+  kPlaneTilt,        ///< G68.2
+  kPlaneFollow,      ///< G53.1: the rotary axes follow it
+  kPlaneOff,         ///< G69
+  kLocalZero,        ///< G52
+  kDynamicOffset,    ///< of Haas; `value`: 1 for G254, 0 for G255
+  kNothing,          ///< says what holds anyway, or how the control smooths
+  kSetting,          ///< the same, with words of its own (G5.1 Q1)
   kRefused
 };
 

@@ -91,12 +91,12 @@ cl::Outcome set_control(State& s, const Line& line, Control control) {
   s.modes.control = control;
   if (before == control) return {};
   const bool was_on = holds_tip(before), is_on = holds_tip(control);
-  if ((was_on || is_on) && s.place.is_turned()) s.place.forget();
+  if ((was_on || is_on) && s.position.is_turned()) s.position.forget();
   // The length of the tool counts from here, or ends.
   const bool has_bare = before == Control::kNone || control == Control::kNone;
-  if (was_on != is_on && has_bare) s.place.tip[2].reset();
-  if (control == Control::kVector) s.place.vector.reset();
-  if (control == Control::kRotary && s.place.rotary.empty()) {
+  if (was_on != is_on && has_bare) s.position.tip[2].reset();
+  if (control == Control::kVector) s.position.vector.reset();
+  if (control == Control::kRotary && s.position.rotary.empty()) {
     s.cl.remarks.warn("rotary zero", line.number, [] {
       return "tool-centre control before any rotary word: the rotary axes are taken to stand at "
              "zero";

@@ -64,10 +64,10 @@ Expected<cl::HoleCycle, cl::Refusal> hole_of(const Cycle& cycle) {
 }
 
 /// Where the tool stands over the hole: X and Y of the line.
-cl::Outcome take_place(State& s, const Line& line) {
+cl::Outcome take_position(State& s, const Line& line) {
   for (std::size_t k = 0; k < 2; ++k) {
     const Word* const word = line.find(k == 0 ? "X" : "Y");
-    std::optional<double>& at = s.place.tip[k];
+    std::optional<double>& at = s.position.tip[k];
     if (word != nullptr) at = s.modes.is_incremental() && at ? *at + word->number : word->number;
     s.cl.summary.decimals =
         std::max(s.cl.summary.decimals, word != nullptr ? word->decimals : std::uint8_t{0});
@@ -83,7 +83,7 @@ void begin_cycle(State& s, int code) {
     const bool returns_to_r = cycle.returns_to_r;
     cycle = {};
     cycle.returns_to_r = returns_to_r;
-    cycle.initial = s.place.tip[2].value_or(0);
+    cycle.initial = s.position.tip[2].value_or(0);
   }
   cycle.code = static_cast<std::uint8_t>(code);
 }
@@ -108,7 +108,7 @@ cl::Outcome run_cycle(State& s, const Line& line) {
     return refuse(std::string(address) + std::string(repeats->digits) + " repeats of a cycle",
                   "write every hole as a block");
   }
-  if (auto done = take_place(s, line); !done) return done;
+  if (auto done = take_position(s, line); !done) return done;
   s.modes.motion = Motion::kLine;
   const auto hole = hole_of(cycle);
   if (!hole) return tl::make_unexpected(hole.error());

@@ -14,7 +14,7 @@ using cl::refuse;
 
 /// The tool axis of a hole, along the axes of the program's zero.
 Vector3 tool_axis(const State& s) {
-  return is_across_plane(s, s.place) ? tool_of_plane(s) : Vector3(Vector3::UnitZ());
+  return is_across_plane(s, s.position) ? tool_of_plane(s) : Vector3(Vector3::UnitZ());
 }
 
 /// The feed in force, where the cycle has none of its own.
@@ -32,13 +32,13 @@ cl::Outcome check_feed(State& s, const Line& line, const cl::HoleCycle& hole) {
 
 cl::Outcome check_hole(const State& s) {
   constexpr double kSameAxis = 1e-6;
-  const bool is_turned = s.place.is_turned() && !is_across_plane(s, s.place);
+  const bool is_turned = s.position.is_turned() && !is_across_plane(s, s.position);
   const bool is_along = (s.frames.now.rotation.col(2) - tool_axis(s)).norm() < kSameAxis;
   if (holds_tip(s.modes.control) || is_turned || !is_along || s.modes.plane != 2) {
     return refuse("a canned cycle with tool-centre control, turned axes or outside G17",
                   kMovesByCam, "cycle");
   }
-  if (!s.place.is_known() || !s.cl.path.has_moved()) {
+  if (!s.position.is_known() || !s.cl.path.has_moved()) {
     return refuse("a canned cycle, but where the tool stands is not known here",
                   "write a G0 with X, Y and Z before it", "not known");
   }
@@ -55,7 +55,7 @@ cl::Outcome drill(State& s, const Line& line, const Drilling& drilling) {
   if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
   if (auto done = check_feed(s, line, hole); !done) return done;
   const Vector3 up = direction_in_w(s, tool_axis(s));
-  const Vector3 top{*s.place.tip[0], *s.place.tip[1], drilling.top};
+  const Vector3 top{*s.position.tip[0], *s.position.tip[1], drilling.top};
   const auto pose = in_path(s, {top, up});
   if (!pose) return tl::make_unexpected(pose.error());
   const double out = std::max(hole.retract_level, hole.rapid_level);
@@ -70,7 +70,7 @@ cl::Outcome drill(State& s, const Line& line, const Drilling& drilling) {
   s.cl.cycle.reset();
   if (!done) return done;
   const Vector3 end = top + Vector3(0, 0, out);
-  s.place.tip[2] = end[2];
+  s.position.tip[2] = end[2];
   s.in_w = {in_w(s, end), up};
   return {};
 }

@@ -12,7 +12,7 @@ using cl::refuse;
 constexpr double kSameTool = 1e-6;  // of the distance between two unit vectors
 
 /// The plane across the tool with the rotary axes there.
-Expected<cl::Frame, cl::Refusal> plane_of_table(const State& s, const Place& place) {
+Expected<cl::Frame, cl::Refusal> plane_of_table(const State& s, const ToolPosition& position) {
   if (!s.axes) {
     return refuse(
         "G254 needs the machine that it is written for: which axes turn the table is in "
@@ -20,15 +20,15 @@ Expected<cl::Frame, cl::Refusal> plane_of_table(const State& s, const Place& pla
         "--machine FILE", "machine");
   }
   if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), kRightMachine, "machine");
-  if (place.is_by_control) {
+  if (position.is_by_control) {
     return refuse("G254, but no word says where the control turned the rotary axes (G53.1)",
                   "write all rotary words before it", "not given");
   }
-  const auto axes_in_w = s.axes->linear_axes(place.rotary);
+  const auto axes_in_w = s.axes->linear_axes(position.rotary);
   if (!axes_in_w) return refuse("G254 needs a machine with the axes X, Y and Z", kRightMachine);
   cl::Frame plane;
   plane.rotation = s.axes->to_program() * *axes_in_w;
-  const Vector3 tool = s.axes->to_program() * s.axes->axis(place.rotary);
+  const Vector3 tool = s.axes->to_program() * s.axes->axis(position.rotary);
   if ((plane.rotation.col(2) - tool).norm() > kSameTool) {
     return refuse(
         "G254 on a machine whose rotary axes turn the tool: X Y Z are not those of its "
@@ -47,7 +47,7 @@ cl::Outcome begin_dynamic_offset(State& s, const Line& line) {
   if (s.frames.tilt != Tilt::kNone && !s.modes.has_dynamic_offset) {
     return refuse("G254 in a tilted plane", "write G69 before it");
   }
-  const auto plane = plane_of_table(s, s.place);
+  const auto plane = plane_of_table(s, s.position);
   if (!plane) return tl::make_unexpected(plane.error());
   s.modes.has_dynamic_offset = true;
   set_plane(s, line, *plane, Tilt::kDefined);
@@ -70,13 +70,13 @@ cl::Outcome turn_with_table(State& s, const Line& line, Target& to) {
   }
   if (s.modes.is_incremental())
     return refuse("rotary words under G254 and G91", "write G90 before");
-  const auto plane = plane_of_table(s, to.place);
+  const auto plane = plane_of_table(s, to.position);
   if (!plane) return tl::make_unexpected(plane.error());
   set_plane(s, line, *plane, Tilt::kDefined);
   // An axis that the block leaves out stands still while the zero goes on with the table.
   constexpr std::array<std::string_view, 3> kTip = {"X", "Y", "Z"};
   for (std::size_t k = 0; k < kTip.size(); ++k) {
-    if (line.find(kTip[k]) == nullptr) to.place.tip[k].reset();
+    if (line.find(kTip[k]) == nullptr) to.position.tip[k].reset();
   }
   to.turns = false;
   if (!s.cl.path.has_moved()) return {};

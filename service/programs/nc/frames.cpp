@@ -16,19 +16,21 @@ using cl::refuse;
 constexpr double kSameAxis = 1e-6;  // of the sine: 0.2 arc seconds
 
 /// What is known of the tool's place, as the frames of now say it.
-void restate_place(State& s, const cl::Frame& from_before) {
-  Place& place = s.place;
-  if (place.is_known()) {
-    const Vector3 tip = from_before.point(Vector3(*place.tip[0], *place.tip[1], *place.tip[2]));
-    for (std::size_t k = 0; k < 3; ++k) place.tip[k] = tip[static_cast<Eigen::Index>(k)];
+void restate_position(State& s, const cl::Frame& from_before) {
+  ToolPosition& position = s.position;
+  if (position.is_known()) {
+    const Vector3 tip =
+        from_before.point(Vector3(*position.tip[0], *position.tip[1], *position.tip[2]));
+    for (std::size_t k = 0; k < 3; ++k) position.tip[k] = tip[static_cast<Eigen::Index>(k)];
   } else if (from_before.rotation.isIdentity()) {
     for (std::size_t k = 0; k < 3; ++k) {
-      if (place.tip[k]) *place.tip[k] += from_before.origin[static_cast<Eigen::Index>(k)];
+      if (position.tip[k]) *position.tip[k] += from_before.origin[static_cast<Eigen::Index>(k)];
     }
   } else {
-    place.forget();
+    position.forget();
   }
-  if (place.vector) place.vector = to_array(from_before.direction(to_vector(*place.vector)));
+  if (position.vector)
+    position.vector = to_array(from_before.direction(to_vector(*position.vector)));
 }
 
 void set_frames(State& s, const Line& line, const cl::Frame& shift, const cl::Frame& plane) {
@@ -39,7 +41,7 @@ void set_frames(State& s, const Line& line, const cl::Frame& shift, const cl::Fr
   frames.now = s.modes.language == Language::kSiemens ? cl::compose(plane, shift)
                                                       : cl::compose(shift, plane);
   if (cl::is_identity(cl::relative(before, frames.now))) return;
-  restate_place(s, cl::relative(frames.now, before));
+  restate_position(s, cl::relative(frames.now, before));
   begin_cycle(s, 0);
   s.modes.pole = {};
   if (s.cl.path.has_moved()) ++s.cl.summary.frame_changes;
@@ -52,9 +54,9 @@ bool is_along(const Vector3& a, const Vector3& b) {
   return a.cross(b).norm() < kSameAxis && a.dot(b) > 0;
 }
 
-bool are_all_reported(const State& s, const Place& place) {
+bool are_all_reported(const State& s, const ToolPosition& position) {
   const std::size_t needed = s.axes ? s.axes->rotary_count() : 2;
-  return place.rotary.size() >= needed;
+  return position.rotary.size() >= needed;
 }
 
 }  // namespace
@@ -115,9 +117,9 @@ void set_plane(State& s, const Line& line, const cl::Frame& plane, Tilt tilt) {
 
 void turn_to_plane(State& s, const Line& line) {
   s.frames.tilt = Tilt::kTurned;
-  s.place.forget();
-  s.place.rotary.clear();
-  s.place.is_by_control = !s.frames.plane.rotation.isIdentity();
+  s.position.forget();
+  s.position.rotary.clear();
+  s.position.is_by_control = !s.frames.plane.rotation.isIdentity();
   if (!s.cl.path.has_moved()) return;
   s.cl.remarks.warn("plane", line.number, [] {
     return std::string(
@@ -127,14 +129,14 @@ void turn_to_plane(State& s, const Line& line) {
   });
 }
 
-bool is_across_plane(const State& s, const Place& place) {
+bool is_across_plane(const State& s, const ToolPosition& position) {
   const ProgramFrames& frames = s.frames;
   if (frames.tilt == Tilt::kTurned || s.modes.has_dynamic_offset) return true;
   if (frames.tilt == Tilt::kNone) return false;
   const Vector3 wanted = tool_of_plane(s);
-  if (!place.is_turned()) return is_along(wanted, Vector3::UnitZ());
-  if (!s.axes || !s.axes->refusal().empty() || !are_all_reported(s, place)) return false;
-  return is_along(s.axes->to_program() * s.axes->axis(place.rotary), wanted);
+  if (!position.is_turned()) return is_along(wanted, Vector3::UnitZ());
+  if (!s.axes || !s.axes->refusal().empty() || !are_all_reported(s, position)) return false;
+  return is_along(s.axes->to_program() * s.axes->axis(position.rotary), wanted);
 }
 
 Vector3 tool_of_plane(const State& s) {
@@ -143,7 +145,7 @@ Vector3 tool_of_plane(const State& s) {
   return s.modes.language == Language::kSiemens ? z : shift.direction(z);
 }
 
-void note_rotary_words(State& s, Place& to) {
+void note_rotary_words(State& s, ToolPosition& to) {
   if (s.frames.tilt == Tilt::kTurned && !holds_tip(s.modes.control)) {
     s.frames.tilt = Tilt::kDefined;
   }
@@ -169,7 +171,7 @@ void set_zero(State& s, const Line& line, const Vector3& zero_mm) {
   const Vector3 back = (s.frames.zero_mm - zero_mm) / s.cl.units.to_mm;
   s.frames.zero_mm = zero_mm;
   const cl::Frame& now = s.frames.now;
-  restate_place(s, moved_by(now.rotation.transpose() * back));
+  restate_position(s, moved_by(now.rotation.transpose() * back));
   begin_cycle(s, 0);
   s.modes.pole = {};
   if (!s.cl.path.has_moved()) return;

@@ -21,11 +21,12 @@ bool is_linear(const Word& word) { return word.address.front() >= 'X'; }
 
 /// Before the first motion nothing is known of where the tool is, and nothing has to be.
 void move_unseen(State& s, const Line& line) {
-  s.place.forget();
+  s.position.forget();
   for (const Word& word : line.words) {
     if (!is_axis_word(word) || is_linear(word)) continue;
-    std::erase_if(s.place.rotary, [&](const RotaryAt& at) { return at.address == word.address; });
-    s.place.rotary.push_back({std::string(word.address), std::nullopt});
+    std::erase_if(s.position.rotary,
+                  [&](const RotaryAt& at) { return at.address == word.address; });
+    s.position.rotary.push_back({std::string(word.address), std::nullopt});
   }
 }
 
@@ -45,9 +46,9 @@ std::string name_of_reference(const Line& line) {
   return is_second ? "G30" : "G30 P" + std::string(p->digits);
 }
 
-const char* code_of(const State& s, MachinePlace place) {
-  if (place == MachinePlace::kHome) return "G28";
-  if (place == MachinePlace::kReference) return "G30";
+const char* code_of(const State& s, MachinePosition position) {
+  if (position == MachinePosition::kHome) return "G28";
+  if (position == MachinePosition::kReference) return "G30";
   if (s.modes.language == Language::kSiemens) return "SUPA";
   return s.modes.language == Language::kHeidenhain ? "M91" : "G53";
 }
@@ -77,9 +78,9 @@ cl::Outcome lead_to_reference(const State& s, const Line& line,
 
 }  // namespace
 
-cl::Outcome move_to_machine_place(State& s, const Line& line, MachinePlace place) {
-  const bool is_as_written = place == MachinePlace::kAsWritten;
-  const char* const code = code_of(s, place);
+cl::Outcome move_to_machine_position(State& s, const Line& line, MachinePosition position) {
+  const bool is_as_written = position == MachinePosition::kAsWritten;
+  const char* const code = code_of(s, position);
   if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
   std::vector<MachineAxes::Target> targets = targets_of(s, line, is_as_written);
   if (targets.empty()) {
@@ -106,14 +107,14 @@ cl::Outcome move_to_machine_place(State& s, const Line& line, MachinePlace place
     return refuse(std::string(code) + " moves to a place of the machine, which is not known here",
                   "--machine FILE", "machine");
   }
-  if (place == MachinePlace::kReference) {
+  if (position == MachinePosition::kReference) {
     if (auto done = lead_to_reference(s, line, targets); !done) return done;
   }
   if (s.cl.path.position() == cl::BlockPath::Position::kLost) {
-    s.place.forget();
+    s.position.forget();
     return {};
   }
-  const auto reached = s.axes->move(s.in_w, s.place.rotary, s.cl.tool, targets);
+  const auto reached = s.axes->move(s.in_w, s.position.rotary, s.cl.tool, targets);
   if (!reached) return tl::make_unexpected(reached.error());
   s.cl.remarks.warn(code, line.number, [code] {
     return std::string(code) +
@@ -124,12 +125,12 @@ cl::Outcome move_to_machine_place(State& s, const Line& line, MachinePlace place
   const auto pose = in_path(s, {written, reached->pose.axis.normalized()});
   if (!pose) return tl::make_unexpected(pose.error());
   s.in_w = reached->pose;
-  s.place.rotary = reached->rotary;
-  s.place.is_by_control = false;
-  if (turns) note_rotary_words(s, s.place);
-  s.place.forget();
-  if (!s.place.is_turned() || holds_tip(s.modes.control) || is_across_plane(s, s.place)) {
-    for (std::size_t k = 0; k < 3; ++k) s.place.tip[k] = written[static_cast<Eigen::Index>(k)];
+  s.position.rotary = reached->rotary;
+  s.position.is_by_control = false;
+  if (turns) note_rotary_words(s, s.position);
+  s.position.forget();
+  if (!s.position.is_turned() || holds_tip(s.modes.control) || is_across_plane(s, s.position)) {
+    for (std::size_t k = 0; k < 3; ++k) s.position.tip[k] = written[static_cast<Eigen::Index>(k)];
   }
   return s.cl.path.line_to(pose->tip, pose->axis, {BlockKind::kRapid, FeedMeaning::kNone, 0},
                            line.number);

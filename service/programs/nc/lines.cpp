@@ -10,19 +10,21 @@ using cl::refuse;
 
 namespace {
 
-Vector3 tip_of(const Place& place) { return {*place.tip[0], *place.tip[1], *place.tip[2]}; }
+Vector3 tip_of(const ToolPosition& position) {
+  return {*position.tip[0], *position.tip[1], *position.tip[2]};
+}
 
 /// Into how many blocks of ours a block with rotary words is cut.
 Expected<int, cl::Refusal> pieces_of(State& s, const Target& to) {
   const bool is_known =
-      s.place.is_known() && s.cl.path.position() == cl::BlockPath::Position::kReached;
+      s.position.is_known() && s.cl.path.position() == cl::BlockPath::Position::kReached;
   const bool is_swept = s.modes.control == Control::kRotary && s.modes.turns_evenly();
   if (!is_swept || !to.turns || !is_known) return 1;
-  if (largest_turn_deg(s.place.rotary, to.place.rotary) > kMaxTurn_deg) {
+  if (largest_turn_deg(s.position.rotary, to.position.rotary) > kMaxTurn_deg) {
     return refuse("more than a hundred turns of a rotary axis in one block", kMovesByCam);
   }
   const int pieces =
-      pieces_of_turn(*s.axes, s.place.rotary, to.place.rotary, s.axes->axis_tolerance_rad());
+      pieces_of_turn(*s.axes, s.position.rotary, to.position.rotary, s.axes->axis_tolerance_rad());
   if (pieces > 1) {
     ++s.cl.summary.nc.turned_blocks;
     s.cl.summary.nc.turned_pieces += static_cast<std::uint64_t>(pieces);
@@ -64,14 +66,14 @@ cl::Outcome line_to(State& s, const Line& line, const Target& to) {
   const auto pieces = pieces_of(s, to);
   if (!pieces) return tl::make_unexpected(pieces.error());
   if (feed->meaning == FeedMeaning::kInverseTime) feed->feed *= *pieces;
-  const Vector3 end = tip_of(to.place);
+  const Vector3 end = tip_of(to.position);
   for (int n = 1; n <= *pieces; ++n) {
     const double share = static_cast<double>(n) / *pieces;
     PathEnd at{end, to.axis};
     if (n < *pieces) {
-      const Vector3 begin = tip_of(s.place);
+      const Vector3 begin = tip_of(s.position);
       at = {begin + share * (end - begin),
-            s.axes->axis(between(s.place.rotary, to.place.rotary, share))};
+            s.axes->axis(between(s.position.rotary, to.position.rotary, share))};
     }
     const auto pose = in_path(s, at);
     if (!pose) return tl::make_unexpected(pose.error());
@@ -79,7 +81,7 @@ cl::Outcome line_to(State& s, const Line& line, const Target& to) {
       return done;
     }
   }
-  s.place = to.place;
+  s.position = to.position;
   s.in_w = {in_w(s, end), to.axis};
   return {};
 }

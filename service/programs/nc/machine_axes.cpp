@@ -18,7 +18,7 @@ using cl::refuse;
 namespace {
 
 constexpr const char* kBeyondReach = "the machine does not reach the place where this move begins";
-constexpr const char* kPlaceOfPart = "check the frame of the part (--frame) and the tool length";
+constexpr const char* kPartSetUp = "check the frame of the part (--frame) and the tool length";
 
 }  // namespace
 
@@ -115,7 +115,7 @@ Expected<double, cl::Refusal> MachineAxes::retract_travel(const ToolPose& from,
   const auto begin = solve_near(from, *length, joints(rotary));
   const auto end = begin ? solve_near({from.tip + from.axis, from.axis}, *length, *begin)
                          : std::optional<JointVector>();
-  if (!end) return refuse(kBeyondReach, kPlaceOfPart);
+  if (!end) return refuse(kBeyondReach, kPartSetUp);
   double travel = std::numeric_limits<double>::infinity();
   for (int i = 0; i < model_.joint_count; ++i) {
     const double step = (*end)[i] - (*begin)[i];
@@ -140,7 +140,7 @@ Expected<MachineAxes::Reached, cl::Refusal> MachineAxes::move(
   const auto length = length_mm(tool);
   if (!length) return tl::make_unexpected(length.error());
   auto q = solve_near(from, *length, joints(rotary));
-  if (!q) return refuse(kBeyondReach, kPlaceOfPart);
+  if (!q) return refuse(kBeyondReach, kPartSetUp);
   for (const Target& target : targets) {
     const int i = words_->find(target.address);
     if (i < 0) {

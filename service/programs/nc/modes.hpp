@@ -128,7 +128,7 @@ struct RotaryAt {
 };
 
 /// Where the program has put the tool. Lengths in the unit of the program, from its zero.
-struct Place {
+struct ToolPosition {
   std::array<std::optional<double>, 3> tip;     ///< nothing: not known here
   std::vector<RotaryAt> rotary;                 ///< of every axis that was programmed
   std::optional<std::array<double, 3>> vector;  ///< of G43.5, unit; nothing: none was given

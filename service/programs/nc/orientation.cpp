@@ -39,7 +39,7 @@ cl::Outcome take_vector(const State& s, const Line& line, Target& to) {
   const double norm = v.norm();
   if (!(norm > 1e-6 && norm < 1e9))
     return refuse("the tool axis has no direction: it is zero", kNumbersByCam);
-  to.place.vector = to_array(Vector3(v / norm));
+  to.position.vector = to_array(Vector3(v / norm));
   return {};
 }
 

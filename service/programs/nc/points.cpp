@@ -27,18 +27,18 @@ void note_digits(State& s, const Line& line, const Word& word) {
   });
 }
 
-void set_rotary(Place& place, std::string_view address, double deg) {
-  const auto at = std::find_if(place.rotary.begin(), place.rotary.end(),
+void set_rotary(ToolPosition& position, std::string_view address, double deg) {
+  const auto at = std::find_if(position.rotary.begin(), position.rotary.end(),
                                [&](const RotaryAt& r) { return r.address == address; });
-  if (at != place.rotary.end()) {
+  if (at != position.rotary.end()) {
     at->deg = deg;
   } else {
-    place.rotary.push_back({std::string(address), deg});
+    position.rotary.push_back({std::string(address), deg});
   }
 }
 
-std::optional<double> rotary_of(const Place& place, std::string_view address) {
-  for (const RotaryAt& at : place.rotary) {
+std::optional<double> rotary_of(const ToolPosition& position, std::string_view address) {
+  for (const RotaryAt& at : position.rotary) {
     if (at.address == address) return at.deg;
   }
   return std::nullopt;
@@ -55,7 +55,7 @@ cl::Outcome take_tip(State& s, const Line& line, Target& to) {
     const Word* const word = line.find(kTip[k]);
     if (word == nullptr) continue;
     note_digits(s, line, *word);
-    std::optional<double>& at = to.place.tip[k];
+    std::optional<double>& at = to.position.tip[k];
     const bool is_incremental = is_relative(s, *word);
     if (is_incremental && !at) {
       return refuse("G91, but where " + std::string(kTip[k]) + " stands is not known here",
@@ -80,7 +80,7 @@ cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
                     "check nc_word in the machine file", "no axis " + address);
     }
     note_digits(s, line, word);
-    const std::optional<double> before = rotary_of(to.place, address);
+    const std::optional<double> before = rotary_of(to.position, address);
     const bool is_incremental = is_relative(s, word);
     if (is_incremental && !before) {
       return refuse("G91, but where " + address + " stands is not known here",
@@ -89,10 +89,10 @@ cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
     const double deg = is_incremental ? *before + word.number : word.number;
     if (!(std::abs(deg) <= 1e6)) return refuse("an angle beyond 1e6 deg", kMovesByCam);
     to.turns = to.turns || before.value_or(0) != deg;
-    set_rotary(to.place, address, deg);
+    set_rotary(to.position, address, deg);
     has_any = true;
   }
-  if (has_any) note_rotary_words(s, to.place);
+  if (has_any) note_rotary_words(s, to.position);
   return {};
 }
 
@@ -106,20 +106,20 @@ cl::Outcome find_axis(const State& s, Target& to) {
           "--machine FILE", "machine");
     }
     if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), kRightMachine, "machine");
-    if (to.place.is_by_control) {
+    if (to.position.is_by_control) {
       return refuse(
           "the control turned the rotary axes (G53.1 and its kin), and no word says to "
           "where",
           "write all rotary words into the first block with tool-centre control", "not given");
     }
-    to.axis = s.axes->axis(to.place.rotary);
+    to.axis = s.axes->axis(to.position.rotary);
     return {};
   }
   Vector3 axis = Vector3::UnitZ();  // along the machine's Z
   const bool is_bare = !holds_tip(s.modes.control);
-  if (is_bare && is_across_plane(s, to.place)) axis = tool_of_plane(s);
+  if (is_bare && is_across_plane(s, to.position)) axis = tool_of_plane(s);
   if (s.modes.control == Control::kVector) {
-    if (!to.place.vector && to.place.is_turned()) {
+    if (!to.position.vector && to.position.is_turned()) {
       return refuse("no I J K yet, and rotary axes are not at zero: the tool axis is not known",
                     "write the tool axis into the first block with tool-centre control");
     }
@@ -127,7 +127,7 @@ cl::Outcome find_axis(const State& s, Target& to) {
     if (is_tilted && s.modes.language == Language::kFanuc) {
       return refuse("G43.5 in a tilted plane", "output G43.5 without G68.2, in one frame", "G43.5");
     }
-    if (to.place.vector) axis = s.frames.now.direction(to_vector(*to.place.vector));
+    if (to.position.vector) axis = s.frames.now.direction(to_vector(*to.position.vector));
   }
   to.axis = direction_in_w(s, axis);
   return {};
@@ -172,14 +172,14 @@ void warn_of_no_length(State& s, const Line& line) {
 /// where the tool stands across a tilted plane.
 bool is_of_tip(const State& s, const Target& to) {
   if (holds_tip(s.modes.control)) return true;
-  return !to.turns && (!to.place.is_turned() || is_across_plane(s, to.place));
+  return !to.turns && (!to.position.is_turned() || is_across_plane(s, to.position));
 }
 
 /// A cut in a tilted plane waits for the rotary axes.
 cl::Outcome check_plane(const State& s, const Target& to) {
   const bool waits = s.modes.motion != Motion::kRapid && s.frames.tilt == Tilt::kDefined &&
                      !holds_tip(s.modes.control);
-  if (!waits || is_across_plane(s, to.place)) return {};
+  if (!waits || is_across_plane(s, to.position)) return {};
   return refuse("a cut in a tilted plane that the tool does not stand across",
                 s.axes ? "turn the tool first: G53.1, or PLANE .. TURN"
                        : "turn the tool first (G53.1, PLANE .. TURN); by rotary words: "
@@ -191,20 +191,20 @@ cl::Outcome move_plainly(State& s, const Line& line, const Target& to) {
   warn_of_no_length(s, line);
   const bool is_cut = s.modes.motion != Motion::kRapid;
   if (is_of_tip(s, to)) {
-    if (to.place.is_known()) return line_to(s, line, to);
+    if (to.position.is_known()) return line_to(s, line, to);
   } else if (is_cut) {
     return refuse("a cut without tool-centre control while a rotary axis is not at zero",
                   "output G43.4 or G43.5, under which X Y Z are those of the tool tip", "no tip");
   }
   if (s.cl.path.has_moved()) warn_of_unseen_rapid(s, line);
-  s.place = to.place;
-  if (!is_of_tip(s, to)) s.place.forget();
+  s.position = to.position;
+  if (!is_of_tip(s, to)) s.position.forget();
   return {};
 }
 
 }  // namespace
 
-bool Place::is_turned() const noexcept {
+bool ToolPosition::is_turned() const noexcept {
   return is_by_control || std::any_of(rotary.begin(), rotary.end(), [](const RotaryAt& at) {
            return !at.deg || std::fmod(*at.deg, 360.0) != 0;
          });
@@ -232,7 +232,7 @@ cl::Outcome move(State& s, const Line& line) {
   if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
   if (auto done = check_work_offset(s, line); !done) return done;
   if (auto done = choose_orientation(s, line); !done) return done;
-  Target to{s.place, Vector3::UnitZ(), false};
+  Target to{s.position, Vector3::UnitZ(), false};
   if (auto done = take_tip(s, line, to); !done) return done;
   if (auto done = take_rotary(s, line, to); !done) return done;
   if (s.modes.has_dynamic_offset && to.turns) {
@@ -245,7 +245,7 @@ cl::Outcome move(State& s, const Line& line) {
   if (auto done = check_plane(s, to); !done) return done;
   const bool is_cut = s.modes.motion != Motion::kRapid;
   const bool has_begun = s.cl.path.has_moved() || is_arc;
-  if (is_cut && (!to.place.is_known() || (has_begun && !s.place.is_known()))) {
+  if (is_cut && (!to.position.is_known() || (has_begun && !s.position.is_known()))) {
     return refuse("a cut, but where it begins is not known here",
                   "write a G0 with X, Y and Z before it, under the tool-centre control in force",
                   "not known");

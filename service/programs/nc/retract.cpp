@@ -24,7 +24,7 @@ Expected<double, cl::Refusal> length_of(State& s, const Line& line, std::optiona
   s.cl.remarks.warn("M140", line.number, [] {
     return std::string("M140 MB MAX: taken along the tool axis to the end of travel");
   });
-  return s.axes->retract_travel(s.in_w, s.place.rotary, s.cl.tool);
+  return s.axes->retract_travel(s.in_w, s.position.rotary, s.cl.tool);
 }
 
 }  // namespace
@@ -32,9 +32,9 @@ Expected<double, cl::Refusal> length_of(State& s, const Line& line, std::optiona
 cl::Outcome retract(State& s, const Line& line, std::optional<double> distance) {
   if (auto done = cl::begin_motion(s.cl, line.number); !done) return done;
   const bool is_lost = s.cl.path.position() == cl::BlockPath::Position::kLost;
-  if (!s.cl.path.has_moved() || is_lost || !s.place.is_known()) {
+  if (!s.cl.path.has_moved() || is_lost || !s.position.is_known()) {
     if (s.cl.path.has_moved() && !is_lost) warn_of_unseen_rapid(s, line);
-    s.place.forget();
+    s.position.forget();
     return {};
   }
   if (line.find("F") == nullptr) s.modes.motion = Motion::kRapid;
@@ -46,7 +46,7 @@ cl::Outcome retract(State& s, const Line& line, std::optional<double> distance) 
   const Vector3 written = as_written(s, end.tip);
   const auto pose = in_path(s, {written, end.axis});
   if (!pose) return tl::make_unexpected(pose.error());
-  for (std::size_t k = 0; k < 3; ++k) s.place.tip[k] = written[static_cast<Eigen::Index>(k)];
+  for (std::size_t k = 0; k < 3; ++k) s.position.tip[k] = written[static_cast<Eigen::Index>(k)];
   s.in_w = end;
   return s.cl.path.line_to(pose->tip, pose->axis, *feed, line.number);
 }

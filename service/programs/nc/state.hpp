@@ -28,7 +28,7 @@ struct State {
   ProgramFrames frames;
   Variables variables;
   ToolNames tools;
-  Place place;
+  ToolPosition position;
   ToolPose in_w{Vector3::Zero(), Vector3::UnitZ()};  ///< where the path ended, without --frame
 };
 
@@ -41,11 +41,11 @@ void set_plane(State& s, const Line& line, const cl::Frame& plane, Tilt tilt);
 /// The control turns the tool across the plane in force: where the tip is then is not known.
 void turn_to_plane(State& s, const Line& line);
 /// Whether the tool stands across the tilted plane in force, with the rotary axes as at `place`.
-[[nodiscard]] bool is_across_plane(const State& s, const Place& place);
+[[nodiscard]] bool is_across_plane(const State& s, const ToolPosition& position);
 /// z of the plane in force, along the axes of the program's zero.
 [[nodiscard]] Vector3 tool_of_plane(const State& s);
 /// A block with rotary words turns the tool off the plane that the control turned it to.
-void note_rotary_words(State& s, Place& to);
+void note_rotary_words(State& s, ToolPosition& to);
 /// A point as written, from the program's zero and in its unit; and back, from W without --frame.
 [[nodiscard]] Vector3 in_program(const State& s, const Vector3& written);
 [[nodiscard]] Vector3 as_written(const State& s, const Vector3& p_w);
@@ -77,7 +77,7 @@ void warn_of_unseen_rapid(State& s, const Line& line);
 
 /// Where a line leads.
 struct Target {
-  Place place;
+  ToolPosition position;
   Vector3 axis = Vector3::UnitZ();  ///< in W, without --frame
   bool turns = false;               ///< some rotary word says another angle than before
 };
@@ -115,12 +115,13 @@ void begin_cycle(State& s, int code);
 [[nodiscard]] cl::Outcome run_cycle(State& s, const Line& line);
 
 // home.cpp
-enum class MachinePlace : std::uint8_t {
+enum class MachinePosition : std::uint8_t {
   kHome,       ///< G28
   kReference,  ///< G30: the position G30 of the machine file, or G30 P3, G30 P4
   kAsWritten   ///< G53, SUPA, M91
 };
-[[nodiscard]] cl::Outcome move_to_machine_place(State& s, const Line& line, MachinePlace place);
+[[nodiscard]] cl::Outcome move_to_machine_position(State& s, const Line& line,
+                                                   MachinePosition position);
 
 // retract.cpp
 /// Along the tool axis off the part, `distance` in the unit of the program, or to the end of

@@ -26,24 +26,24 @@ constexpr double kLandsOn = 1e-6;     // mm, rad: end of the piece, planned and 
 
 }  // namespace
 
-Subdivider::Place Subdivider::place_at(const PathPiece& piece, double share,
-                                       const JointVector& reference) const {
-  Place place;
+Subdivider::Sample Subdivider::sample_at(const PathPiece& piece, double share,
+                                         const JointVector& reference) const {
+  Sample sample;
   const auto at = joints_at(model_, piece, share * piece.length, reference);
-  place.is_reachable = at.status != SolveStatus::kUnreachable;
-  place.exact = at.q;
-  place.end = {share, words_.as_written(drives_of(model_, at.q))};
+  sample.is_reachable = at.status != SolveStatus::kUnreachable;
+  sample.exact = at.q;
+  sample.end = {share, words_.as_written(drives_of(model_, at.q))};
   if (motion_ == BlockMotion::kDrives) {
     const Jacobian j = jacobian(model_, piece.tool_length_mm, at.q);
     for (int i = 0; i < model_.joint_count; ++i) {
       if (model_.joints[i].is_rotary)
-        place.reach = std::max(place.reach, j.col(i).head<3>().norm());
+        sample.reach = std::max(sample.reach, j.col(i).head<3>().norm());
     }
   }
-  return place;
+  return sample;
 }
 
-bool Subdivider::keeps(const PathPiece& piece, const Place& from, const Place& to) const {
+bool Subdivider::keeps(const PathPiece& piece, const Sample& from, const Sample& to) const {
   const DriveLine line = bound_drive_line(model_, from.end.axes, to.end.axes);
   if (!line.is_known) return false;
   double turn = 0, slide = 0, turn_bend = 0, slide_bend = 0;
@@ -71,8 +71,8 @@ bool Subdivider::keeps(const PathPiece& piece, const Place& from, const Place& t
   };
   const ToolPose begin = pose_of(from.end.axes), end = pose_of(to.end.axes);
   double tip_off = 0, axis_off = 0;
-  for (int n = 0; n <= kPlaces; ++n) {
-    const double u = static_cast<double>(n) / kPlaces;
+  for (int n = 0; n <= kSamples; ++n) {
+    const double u = static_cast<double>(n) / kSamples;
     const ToolPose path = pose_at(piece, (from.end.share + u * share) * piece.length);
     ToolPose pose = between(begin, end, u);
     if (motion_ != BlockMotion::kTipAndAxis) {
@@ -87,7 +87,7 @@ bool Subdivider::keeps(const PathPiece& piece, const Place& from, const Place& t
     tip_off = std::max(tip_off, (pose.tip - path.tip).norm());
     axis_off = std::max(axis_off, (pose.axis - path.axis).norm());
   }
-  constexpr double kRest = 1.0 / (8.0 * kPlaces * kPlaces);
+  constexpr double kRest = 1.0 / (8.0 * kSamples * kSamples);
   const double chord = axis_off + kRest * axis_bend;  // of the axes' tips on the unit sphere
   return tip_off + kRest * tip_bend <= tolerance_.chord_mm &&
          2 * std::asin(std::min(1.0, chord / 2)) <= tolerance_.axis_rad;
@@ -95,14 +95,14 @@ bool Subdivider::keeps(const PathPiece& piece, const Place& from, const Place& t
 
 bool Subdivider::cut(const PathPiece& piece, const JointVector& begin, const Check& is_short_enough,
                      const Take& take) const {
-  Place from = place_at(piece, 0, piece.joints_begin);
+  Sample from = sample_at(piece, 0, piece.joints_begin);
   from.end.axes = begin;
   double step = 1;
   while (from.end.share < 1) {
     const double rest = 1 - from.end.share;
     step = std::min(step, rest);
     const double share = step < rest ? from.end.share + step : 1;
-    const Place to = place_at(piece, share, from.exact);
+    const Sample to = sample_at(piece, share, from.exact);
     if (to.is_reachable && keeps(piece, from, to) && is_short_enough(from.end, to.end)) {
       take(to.end);
       from = to;

@@ -54,19 +54,19 @@ class Subdivider {
                          const Check& is_short_enough, const Take& take) const;
 
  private:
-  static constexpr int kPlaces = 8;
+  static constexpr int kSamples = 8;
 
   /// A place on the piece with what the bound needs to know there.
-  struct Place {
+  struct Sample {
     BlockEnd end;
     JointVector exact{};  ///< not rounded: reference of the next
     double reach = 0;     ///< largest distance of the tip from a rotary axis
     bool is_reachable = true;
   };
 
-  [[nodiscard]] Place place_at(const PathPiece& piece, double share,
-                               const JointVector& reference) const;
-  [[nodiscard]] bool keeps(const PathPiece& piece, const Place& from, const Place& to) const;
+  [[nodiscard]] Sample sample_at(const PathPiece& piece, double share,
+                                 const JointVector& reference) const;
+  [[nodiscard]] bool keeps(const PathPiece& piece, const Sample& from, const Sample& to) const;
 
   const MachineModel& model_;
   const AxisWords& words_;

@@ -13,7 +13,7 @@
 namespace meridian::proof {
 namespace {
 
-constexpr double kPlace_mm = 1e-3;  // words are rounded to 0.1 um and 0.1 urad
+constexpr double kPosition_mm = 1e-3;  // words are rounded to 0.1 um and 0.1 urad
 constexpr double kAngle_rad = 1e-6;
 
 /// Where a step stands as seen from where the rewind began.
@@ -54,7 +54,7 @@ class RewindFinder {
   [[nodiscard]] Lift seen(const ToolPose& at, double turn) const {
     const Vector3 off = at.tip - pose_.tip;
     const double up = off.dot(pose_.axis);
-    const bool is_on_line = (off - up * pose_.axis).norm() <= kPlace_mm && up >= -kPlace_mm;
+    const bool is_on_line = (off - up * pose_.axis).norm() <= kPosition_mm && up >= -kPosition_mm;
     if (!is_on_line) return {up, turn, Lift::Pose::kElsewhere};
     if (angle_between(at.axis, pose_.axis) <= kAngle_rad) return {up, turn, Lift::Pose::kOnAxis};
     const bool is_tilted = record::is_towards_pole(model_, pose_.axis, at.axis, kAngle_rad);
@@ -93,9 +93,9 @@ std::optional<std::size_t> find_rewind(const ProgramStep& rest, std::span<const 
                        is_other != (before.pose == Lift::Pose::kOtherBranch) ||
                        std::abs(now.turn_rad - before.turn_rad) > kAngle_rad;
     const bool is_clear =
-        before.up_mm >= limits.clear_mm && std::abs(now.up_mm - before.up_mm) < kPlace_mm;
+        before.up_mm >= limits.clear_mm && std::abs(now.up_mm - before.up_mm) < kPosition_mm;
     if (now.pose == Lift::Pose::kElsewhere || (turns && !is_clear)) return std::nullopt;
-    if (now.up_mm <= kPlace_mm) {
+    if (now.up_mm <= kPosition_mm) {
       const bool is_rewound = is_other || is_whole_turn(now.turn_rad);
       return is_rewound ? std::optional(n) : std::nullopt;
     }

@@ -92,11 +92,11 @@ std::vector<double> breaks(const std::vector<double>& knots, const std::array<do
 
 /// A point in homogeneous coordinates: place times weight, and the weight.
 struct Weighted {
-  Vector3 place = Vector3::Zero();
+  Vector3 point = Vector3::Zero();
   double weight = 0;
 
   void add(double factor, const Vector3& p, double w) noexcept {
-    place += factor * w * p;
+    point += factor * w * p;
     weight += factor * w;
   }
 };
@@ -151,12 +151,12 @@ SurfacePoint NurbsSurface::evaluate(double u, double v) const noexcept {
   const double w = sum[0][0].weight;
   const double wu = sum[1][0].weight, wv = sum[0][1].weight;
   SurfacePoint s;
-  s.at = sum[0][0].place / w;
-  s.du = (sum[1][0].place - wu * s.at) / w;
-  s.dv = (sum[0][1].place - wv * s.at) / w;
-  s.duu = (sum[2][0].place - 2 * wu * s.du - sum[2][0].weight * s.at) / w;
-  s.duv = (sum[1][1].place - wu * s.dv - wv * s.du - sum[1][1].weight * s.at) / w;
-  s.dvv = (sum[0][2].place - 2 * wv * s.dv - sum[0][2].weight * s.at) / w;
+  s.at = sum[0][0].point / w;
+  s.du = (sum[1][0].point - wu * s.at) / w;
+  s.dv = (sum[0][1].point - wv * s.at) / w;
+  s.duu = (sum[2][0].point - 2 * wu * s.du - sum[2][0].weight * s.at) / w;
+  s.duv = (sum[1][1].point - wu * s.dv - wv * s.du - sum[1][1].weight * s.at) / w;
+  s.dvv = (sum[0][2].point - 2 * wv * s.dv - sum[0][2].weight * s.at) / w;
   return s;
 }
 

@@ -15,7 +15,7 @@ using config::Range;
 using config::Section;
 
 constexpr std::size_t kMaxPoints = 1000;  // of the net, either way
-constexpr Range kPlace_mm{-1e5, 1e5};
+constexpr Range kPosition_mm{-1e5, 1e5};
 constexpr Range kWeight{1e-6, 1e6};
 constexpr Range kKnot{-1e6, 1e6};
 constexpr Range kStep_mm{1e-6, 1e3};
@@ -26,10 +26,10 @@ void read_row(Section& row, NurbsNet& net) {
   const std::size_t min = is_first ? 2 : net.columns;
   const std::size_t max = is_first ? kMaxPoints : net.columns;
   const std::string all = "all rows have as many points as the first";
-  const std::vector<double> x = row.numbers("x_mm", min, max, kPlace_mm, all);
+  const std::vector<double> x = row.numbers("x_mm", min, max, kPosition_mm, all);
   net.columns = x.size();
-  const std::vector<double> y = row.numbers("y_mm", x.size(), x.size(), kPlace_mm, all);
-  const std::vector<double> z = row.numbers("z_mm", x.size(), x.size(), kPlace_mm, all);
+  const std::vector<double> y = row.numbers("y_mm", x.size(), x.size(), kPosition_mm, all);
+  const std::vector<double> z = row.numbers("z_mm", x.size(), x.size(), kPosition_mm, all);
   std::vector<double> weights(x.size(), 1.0);
   if (row.has("weight")) {
     weights = row.numbers("weight", x.size(), x.size(), kWeight,

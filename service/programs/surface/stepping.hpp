@@ -39,26 +39,26 @@ template <class ErrorOf>
 /// of one length, so that no tiny one is left over. Appends to `places`, which already ends in
 /// `begin`; false where that takes more than `max` places.
 template <class ErrorOf>
-[[nodiscard]] bool append_steps(std::vector<double>& places, double end, double bound,
+[[nodiscard]] bool append_steps(std::vector<double>& parameters, double end, double bound,
                                 std::size_t max, const ErrorOf& error_of) {
-  const double span = end - places.back();
+  const double span = end - parameters.back();
   const double min = span / static_cast<double>(max);
   double guess = span;
-  while (places.back() < end) {
-    const double at = places.back();
+  while (parameters.back() < end) {
+    const double at = parameters.back();
     const auto step = longest_step(at, end, guess, min, bound, error_of);
-    if (!step || places.size() >= max) return false;
+    if (!step || parameters.size() >= max) return false;
     guess = *step;
     const double rest = end - at - *step;
     if (rest <= 1e-12 * span) {
-      places.push_back(end);
+      parameters.push_back(end);
     } else if (rest < *step) {
       const double middle = at + 0.5 * (end - at);
       const auto second = error_of(middle, end);
       if (!second) return false;
-      places.push_back(*second <= bound ? middle : at + *step);
+      parameters.push_back(*second <= bound ? middle : at + *step);
     } else {
-      places.push_back(at + *step);
+      parameters.push_back(at + *step);
     }
   }
   return true;

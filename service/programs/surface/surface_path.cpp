@@ -19,7 +19,7 @@ constexpr double kMargin = 0.98;
 constexpr std::size_t kMaxLines = 100'000;
 constexpr int kScallopSamples = 16;  // on each piece of a line
 
-std::vector<double> even_places(const std::array<double, 2>& range, std::size_t count) {
+std::vector<double> even_parameters(const std::array<double, 2>& range, std::size_t count) {
   std::vector<double> out;
   for (std::size_t i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(count - 1);
@@ -28,7 +28,7 @@ std::vector<double> even_places(const std::array<double, 2>& range, std::size_t 
   return out;
 }
 
-std::string place(double u, double v) {
+std::string parameter(double u, double v) {
   char text[80];
   std::snprintf(text, sizeof text, "u = %.6g, v = %.6g", u, v);
   return text;
@@ -58,13 +58,13 @@ class Cover {
     if (fault_) return tl::make_unexpected(std::move(*fault_));
     SurfacePath path;
     path.is_zigzag = options_.is_zigzag;
-    const std::vector<double> rows = line_places();
+    const std::vector<double> rows = line_parameters();
     if (rows.size() * options_.points > kMaxContacts) refuse_count();
     std::size_t count = 0;
     for (std::size_t i = 0; i < rows.size() && !fault_; ++i) {
       SurfacePath::Line line;
       const bool is_back = options_.is_zigzag && i % 2 == 1;
-      line.place = rows[i];
+      line.parameter = rows[i];
       line.contacts = contacts_of(rows[i], is_back);
       if (options_.is_zigzag && i + 1 < rows.size()) {
         line.crossing = crossing(is_back ? along_[0] : along_[1], rows[i], rows[i + 1]);
@@ -83,7 +83,7 @@ class Cover {
     const double v = rule_.runs_along_u ? across : along;
     auto found = find_contact(rule_, u, v);
     if (!found && !fault_) {
-      fault_ = PathFault{"the surface has no normal at " + place(u, v) +
+      fault_ = PathFault{"the surface has no normal at " + parameter(u, v) +
                              ": an edge or a corner has shrunk to a point there",
                          "keep clear of it: path.range_u or path.range_v"};
     }
@@ -93,10 +93,10 @@ class Cover {
   /// Faults a knot at which the normals of both sides differ: a cutter cannot follow them there.
   void find_crease(const std::vector<double>& breaks, bool is_along) {
     constexpr double kBeside = 1e-7, kCrease_rad = 1e-4;
-    constexpr std::size_t kPlaces = 33;
+    constexpr std::size_t kSamples = 33;
     const double beside = kBeside * (breaks.back() - breaks.front());
     for (std::size_t i = 1; i + 1 < breaks.size() && !fault_; ++i) {
-      for (const double other : even_places(is_along ? across_ : along_, kPlaces)) {
+      for (const double other : even_parameters(is_along ? across_ : along_, kSamples)) {
         const auto shape = [&](double at) {
           const bool is_u = is_along == rule_.runs_along_u;
           return shape_at(*rule_.surface, is_u ? at : other, is_u ? other : at, rule_.is_flipped);
@@ -126,16 +126,16 @@ class Cover {
     if (!a || !b) return std::nullopt;
     auto error = chord_error(rule_, *a, *b);
     if (!error && !fault_) {
-      fault_ = PathFault{
-          "the surface has no normal between " + place(a->u, a->v) + " and " + place(b->u, b->v),
-          "keep clear of it: path.range_u or path.range_v"};
+      fault_ = PathFault{"the surface has no normal between " + parameter(a->u, a->v) + " and " +
+                             parameter(b->u, b->v),
+                         "keep clear of it: path.range_u or path.range_v"};
     }
     return error;
   }
 
   /// Places of a way whose blocks keep the chord error; it rests on every knot that it meets.
-  std::vector<double> bounded_places(double fixed, const std::vector<double>& breaks,
-                                     bool is_along) {
+  std::vector<double> bounded_parameters(double fixed, const std::vector<double>& breaks,
+                                         bool is_along) {
     std::vector<double> out{breaks.front()};
     for (std::size_t i = 1; i < breaks.size() && !fault_; ++i) {
       const bool is_kept = append_steps(
@@ -147,11 +147,11 @@ class Cover {
   }
 
   std::vector<Contact> contacts_of(double row, bool is_back) {
-    const std::vector<double> places = options_.points > 0
-                                           ? even_places(along_, options_.points)
-                                           : bounded_places(row, along_breaks_, true);
+    const std::vector<double> parameters = options_.points > 0
+                                               ? even_parameters(along_, options_.points)
+                                               : bounded_parameters(row, along_breaks_, true);
     std::vector<Contact> out;
-    for (const double along : places) {
+    for (const double along : parameters) {
       if (auto found = contact(along, row)) out.push_back(*found);
     }
     if (is_back) std::reverse(out.begin(), out.end());
@@ -167,20 +167,20 @@ class Cover {
       if (b > from && b < to) breaks.push_back(b);
     }
     breaks.push_back(to);
-    const std::vector<double> places = bounded_places(along, breaks, false);
-    for (std::size_t i = 1; i + 1 < places.size(); ++i) {
-      if (auto found = contact(along, places[i])) out.push_back(*found);
+    const std::vector<double> parameters = bounded_parameters(along, breaks, false);
+    for (std::size_t i = 1; i + 1 < parameters.size(); ++i) {
+      if (auto found = contact(along, parameters[i])) out.push_back(*found);
     }
     return out;
   }
 
   /// Faults a line on which the surface has no normal.
   void check_line(double row) {
-    for (const double along : even_places(along_, 257)) (void)contact(along, row);
+    for (const double along : even_parameters(along_, 257)) (void)contact(along, row);
   }
 
-  std::vector<double> line_places() {
-    if (options_.lines > 0) return even_places(across_, options_.lines);
+  std::vector<double> line_parameters() {
+    if (options_.lines > 0) return even_parameters(across_, options_.lines);
     std::vector<double> out{across_[0]};
     const bool is_kept = append_steps(
         out, across_[1], kMargin * options_.scallop_mm, kMaxLines,

@@ -28,7 +28,7 @@ struct CoverOptions {
 /// crossing to the next one (none in a one-way path, and none where the counts are even).
 struct SurfacePath {
   struct Line {
-    double place = 0;  ///< the parameter that stays the same on it
+    double parameter = 0;  ///< the parameter that stays the same on it
     std::vector<Contact> contacts;
     std::vector<Contact> crossing;
   };

@@ -88,7 +88,7 @@ SurfaceReport measure(const PatchJob& job, const SurfacePath& path) {
     for (const Contact& c : line.crossing) measure.add(c, report.crossing_chord_error_mm, true);
     if (i > 0) {
       const auto scallop =
-          scallop_of_lines(job.rule, job.cover, path.lines[i - 1].place, line.place);
+          scallop_of_lines(job.rule, job.cover, path.lines[i - 1].parameter, line.parameter);
       if (scallop) report.scallop_mm = std::max(report.scallop_mm, *scallop);
     }
   }

@@ -32,8 +32,8 @@ Chunk::~Chunk() = default;
 
 void Chunk::add(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns,
                 std::string_view data) {
-  if (channel >= places_.size()) places_.resize(channel + std::size_t{1});
-  places_[channel].push_back({time_ns, records_.size()});
+  if (channel >= index_.size()) index_.resize(channel + std::size_t{1});
+  index_[channel].push_back({time_ns, records_.size()});
   first_ns_ = is_empty() ? time_ns : std::min(first_ns_, time_ns);
   last_ns_ = is_empty() ? time_ns : std::max(last_ns_, time_ns);
   put_record(records_, Opcode::kMessage, [&](std::string& out) {
@@ -76,20 +76,20 @@ void Chunk::finish(std::uint64_t offset, std::string& out, ChunkEntry& entry) {
     to.append(content);
   });
   entry.length = out.size();
-  entry.index_offsets.assign(places_.size(), 0);
-  for (std::size_t channel = 0; channel < places_.size(); ++channel) {
-    if (places_[channel].empty()) continue;
+  entry.index_offsets.assign(index_.size(), 0);
+  for (std::size_t channel = 0; channel < index_.size(); ++channel) {
+    if (index_[channel].empty()) continue;
     entry.index_offsets[channel] = offset + out.size();
     put_record(out, Opcode::kMessageIndex, [&](std::string& to) {
       put(to, static_cast<std::uint16_t>(channel));
       put_list(to, [&](std::string& list) {
-        for (const Place& place : places_[channel]) {
+        for (const IndexEntry& place : index_[channel]) {
           put(list, place.time_ns);
           put(list, place.offset);
         }
       });
     });
-    places_[channel].clear();
+    index_[channel].clear();
   }
   entry.index_length = out.size() - entry.length;
   records_.clear();

@@ -42,7 +42,7 @@ class Chunk {
   void finish(std::uint64_t offset, std::string& out, ChunkEntry& entry);
 
  private:
-  struct Place {
+  struct IndexEntry {
     std::uint64_t time_ns = 0, offset = 0;
   };
   struct Packer;
@@ -50,7 +50,7 @@ class Chunk {
 
   std::unique_ptr<Packer> packer_;  ///< null: nothing is packed
   std::string records_, packed_;
-  std::vector<std::vector<Place>> places_;  ///< by channel
+  std::vector<std::vector<IndexEntry>> index_;  ///< by channel
   std::uint64_t first_ns_ = 0, last_ns_ = 0;
 };
 

@@ -19,20 +19,20 @@ class AuditQueue {
 
  public:
   AuditQueue() noexcept {
-    for (std::size_t i = 0; i < N; ++i) places_[i].turn.store(i, std::memory_order_relaxed);
+    for (std::size_t i = 0; i < N; ++i) slots_[i].turn.store(i, std::memory_order_relaxed);
   }
 
   /// Any thread. False, and `value` stays as it was, where there is no room.
   [[nodiscard]] bool try_push(T&& value) noexcept {
     std::uint64_t ticket = next_.load(std::memory_order_relaxed);
     for (;;) {
-      Place& place = places_[ticket % N];
-      const std::uint64_t turn = place.turn.load(std::memory_order_acquire);
+      Slot& slot = slots_[ticket % N];
+      const std::uint64_t turn = slot.turn.load(std::memory_order_acquire);
       if (turn < ticket) return false;
       if (turn == ticket &&
           next_.compare_exchange_weak(ticket, ticket + 1, std::memory_order_relaxed)) {
-        place.value = std::move(value);
-        place.turn.store(ticket + 1, std::memory_order_release);
+        slot.value = std::move(value);
+        slot.turn.store(ticket + 1, std::memory_order_release);
         return true;
       }
       if (turn != ticket) ticket = next_.load(std::memory_order_relaxed);
@@ -41,20 +41,20 @@ class AuditQueue {
 
   /// The consumer's thread alone.
   [[nodiscard]] bool try_pop(T& value) noexcept {
-    Place& place = places_[taken_ % N];
-    if (place.turn.load(std::memory_order_acquire) != taken_ + 1) return false;
-    value = std::exchange(place.value, T());
-    place.turn.store(taken_ + N, std::memory_order_release);
+    Slot& slot = slots_[taken_ % N];
+    if (slot.turn.load(std::memory_order_acquire) != taken_ + 1) return false;
+    value = std::exchange(slot.value, T());
+    slot.turn.store(taken_ + N, std::memory_order_release);
     ++taken_;
     return true;
   }
 
  private:
-  struct Place {
+  struct Slot {
     std::atomic<std::uint64_t> turn{0};
     T value{};
   };
-  std::array<Place, N> places_;
+  std::array<Slot, N> slots_;
   alignas(64) std::atomic<std::uint64_t> next_{0};
   alignas(64) std::uint64_t taken_ = 0;
 };

@@ -55,10 +55,10 @@ std::filesystem::path KeptFiles::add(std::int64_t severity_ns, const std::string
   if (text::write_anew(part, content) != 0) return {};
   std::filesystem::rename(part, file, failed);
   if (failed) return {};
-  const auto place = std::find_if(kept_.begin(), kept_.end(), [severity_us](const KeptFile& kept) {
-    return kept.severity_us < severity_us;
-  });
-  kept_.insert(place, {severity_us, file});
+  const auto position =
+      std::find_if(kept_.begin(), kept_.end(),
+                   [severity_us](const KeptFile& kept) { return kept.severity_us < severity_us; });
+  kept_.insert(position, {severity_us, file});
   for (; kept_.size() > max_; kept_.pop_back()) {
     std::filesystem::remove(kept_.back().file, failed);
   }

@@ -25,16 +25,16 @@ inline constexpr int kNoWord = -1;
 struct Machine {
   State state = State::kOff;
   bool has_fault = false, is_emergency = false, has_feedback = true;  ///< what the drives report
-  bool is_on = false;           ///< every drive reports operation enabled
-  int waiting = 0;              ///< pieces in the queue, at most two
-  bool has_piece = false;       ///< one is in force
-  bool is_moving = false;       ///< the joints are under way
-  bool may_go_on = false;       ///< starved for a short time, by the session that is still there
-  bool has_session = false;     ///< a station holds the machine
-  bool is_granted = false;      ///< ghost: an operator's start or resume stands behind the motion
-  bool is_clear = true;         ///< ghost: no fault since the last reset
-  bool is_dry_run = false;      ///< drives stay off
-  bool is_place_known = false;  ///< ghost: where the joints are was taken from the drives
+  bool is_on = false;        ///< every drive reports operation enabled
+  int waiting = 0;           ///< pieces in the queue, at most two
+  bool has_piece = false;    ///< one is in force
+  bool is_moving = false;    ///< the joints are under way
+  bool may_go_on = false;    ///< starved for a short time, by the session that is still there
+  bool has_session = false;  ///< a station holds the machine
+  bool is_granted = false;   ///< ghost: an operator's start or resume stands behind the motion
+  bool is_clear = true;      ///< ghost: no fault since the last reset
+  bool is_dry_run = false;   ///< drives stay off
+  bool is_position_known = false;  ///< ghost: where the joints are was taken from the drives
   int word = kNoWord;      ///< verb that waits for its turn behind others; of these one at a time
   bool is_passed = false;  ///< a stop was said behind it, and came first
   std::string wrong{};
@@ -48,7 +48,7 @@ struct Machine {
   std::string key = name_of(m.state);
   for (const bool b :
        {m.has_fault, m.is_emergency, m.has_feedback, m.is_on, m.has_piece, m.is_moving, m.may_go_on,
-        m.has_session, m.is_granted, m.is_clear, m.is_dry_run, m.is_place_known}) {
+        m.has_session, m.is_granted, m.is_clear, m.is_dry_run, m.is_position_known}) {
     key += b ? '1' : '0';
   }
   return key + std::to_string(m.waiting) + (m.is_passed ? 'p' : 'w') + std::to_string(m.word) +
@@ -61,7 +61,7 @@ struct Machine {
   if (m.is_moving && !is_on_path(m.state)) return "motion in a state of rest";
   if (m.is_moving && !m.is_granted) return "motion that no operator started";
   if (m.is_moving && !m.is_clear && m.state != State::kFaultStop) return "motion after a fault";
-  if (is_enabled(m.state) && !m.is_dry_run && !m.is_place_known) {
+  if (is_enabled(m.state) && !m.is_dry_run && !m.is_position_known) {
     return "drives are led from a place that they did not report";
   }
   return "";
@@ -148,7 +148,7 @@ class OperatedMachine {
     if (effect.effect == Effect::kSet && verb == Verb::kDryRun) return set_dry_run(m);
     if (effect.effect != Effect::kGo) return;
     if (verb == Verb::kEnable && !may_enable(m)) return;
-    if (verb == Verb::kEnable) m.is_place_known = !m.is_dry_run;
+    if (verb == Verb::kEnable) m.is_position_known = !m.is_dry_run;
     if (verb == Verb::kHome && m.is_dry_run) return;
     if (verb == Verb::kReset && m.hears_emergency()) return;
     if (verb == Verb::kResume && !m.has_piece && m.waiting == 0) return;

@@ -29,7 +29,7 @@ TEST(SingleBlock, RestsAtTheSamePlacesWhereTheFeedIsPlannedForMoreThan100Percent
     ASSERT_TRUE(run.is_started());
     run.command(Verb::kFeedOverride, 1.5);
     EXPECT_EQ(step_through(run, raised), every_block(job));
-    for (const auto& [block, joints] : rests) expect_same_place(joints, raised[block], block);
+    for (const auto& [block, joints] : rests) expect_same_position(joints, raised[block], block);
     LimitShares worst;
     test::expect_within_limits(run.world, 0, false, worst);
     double max = 0;
@@ -188,7 +188,7 @@ TEST(SingleBlock, BrakesToTheSamePlaceWherePeriodsAreLostWhileItBrakes) {
     }
   }
   EXPECT_EQ(same.size(), rests.size());
-  for (const auto& [block, joints] : rests) expect_same_place(joints, same[block], block);
+  for (const auto& [block, joints] : rests) expect_same_position(joints, same[block], block);
   EXPECT_GT(lost, 100);
 }
 

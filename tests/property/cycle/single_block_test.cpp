@@ -60,7 +60,7 @@ TEST(SingleBlock, SaidAgainKeepsTheBrakeThatIsOn) {
   ASSERT_TRUE(once.is_started() && often.is_started());
   Rests rests, same;
   EXPECT_EQ(step_through(once, rests), step_through(often, same, 3));
-  for (const auto& [block, joints] : rests) expect_same_place(joints, same[block], block);
+  for (const auto& [block, joints] : rests) expect_same_position(joints, same[block], block);
 }
 
 /// The rate goes up and comes down once between two rests.
@@ -151,7 +151,7 @@ TEST(SingleBlock, RestsExactlyAtEndsWhateverTheOperatorDoes) {
       const CycleRecord& record = run.world.records.back();
       if (state == State::kStepping) {
         ASSERT_TRUE(rests.contains(record.sequence)) << record.sequence;
-        expect_same_place(record.joints, rests[record.sequence], record.sequence);
+        expect_same_position(record.joints, rests[record.sequence], record.sequence);
         EXPECT_EQ(record.sequence, was_rested_on && expected ? *expected : record.sequence);
         EXPECT_GE(record.sequence, behind);
         behind = record.sequence + 1;
@@ -236,7 +236,7 @@ TEST(SingleBlock, RestsAtTheSamePlacesWherePeriodsAreLost) {
   for (double t = 0; t < kMaxSeconds && !run.is_over(); t += run.world.dt()) {
     if (run.world.now() == State::kStepping) {
       order.push_back(run.world.records.back().sequence);
-      expect_same_place(run.world.records.back().joints, rests[order.back()], order.back());
+      expect_same_position(run.world.records.back().joints, rests[order.back()], order.back());
       run.command(Verb::kResume);
     } else if (random.chance(0.05)) {
       run.world.run(random.chance(0.5) ? 1 : 2);

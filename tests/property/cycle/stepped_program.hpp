@@ -24,7 +24,7 @@ struct Stepped : test::PlannedRun<SmoothPlanner> {
       : PlannedRun(job.machine, job.blocks, job.start(), blocks_before_start, nullptr, true) {}
 };
 
-inline constexpr double kSamePlace = 1e-9;  // mm, rad; joints are of 1e3, times eps 2e-13
+inline constexpr double kSamePosition = 1e-9;  // mm, rad; joints are of 1e3, times eps 2e-13
 inline constexpr double kMaxSeconds = 400;
 
 /// Blocks of 0.1 to `longest_mm` that bend, turn back and tilt, with feeds of 10 to 150 mm/s.
@@ -97,9 +97,9 @@ inline std::vector<std::uint64_t> every_block(const Job& job) {
   return out;
 }
 
-inline void expect_same_place(const JointVector& a, const JointVector& b, std::uint64_t block) {
+inline void expect_same_position(const JointVector& a, const JointVector& b, std::uint64_t block) {
   for (std::size_t i = 0; i < a.size(); ++i)
-    EXPECT_NEAR(a[i], b[i], kSamePlace) << "block " << block;
+    EXPECT_NEAR(a[i], b[i], kSamePosition) << "block " << block;
 }
 
 /// The next end of a block ahead of a machine in mid-motion; its own walk over the port.

@@ -53,7 +53,7 @@ void Protocol::push(const Accepted& accepted, std::uint64_t session) {
     ++pushed_;
     queue_.push_back(block.sequence);
   }
-  if (queue_.size() > bounds_.places + kReserve) wrong_ = "more blocks than places";
+  if (queue_.size() > bounds_.slots + kReserve) wrong_ = "more blocks than places";
 }
 
 void Protocol::run_block() {

@@ -25,15 +25,15 @@ namespace meridian::stream {
 /// Protocols that are wrong on purpose, for the check of the check.
 enum class Variant : std::uint8_t {
   kRight,
-  kCountsPlacesTwice,  ///< the service grants more places than its queue has
-  kTrustsTheWire,      ///< the service does not look at the CRC
-  kRunsDuplicates      ///< the service takes what comes again
+  kCountsSlotsTwice,  ///< the service grants more places than its queue has
+  kTrustsTheWire,     ///< the service does not look at the CRC
+  kRunsDuplicates     ///< the service takes what comes again
 };
 
 /// How small the machine is, and how often what is rare may happen: so that it is finite.
 struct Bounds {
   std::uint64_t blocks = 2;                    ///< of the program, besides its end
-  std::size_t places = 2;                      ///< of the queue, as the check knows them
+  std::size_t slots = 2;                       ///< of the queue, as the check knows them
   std::size_t to_service = 2, to_station = 1;  ///< messages under way; one more is lost
   int station_restarts = 0, service_restarts = 0, aborts = 0;
 };
@@ -93,10 +93,10 @@ class Protocol {
     has_end_ = false;
   }
   [[nodiscard]] Surroundings around() const {
-    const std::size_t places =
-        variant_ == Variant::kCountsPlacesTwice ? 2 * bounds_.places : bounds_.places;
-    const std::size_t used = std::min(queue_.size(), places);
-    return {.now_ns = now_, .free_places = places - used, .actions = {}};
+    const std::size_t slots =
+        variant_ == Variant::kCountsSlotsTwice ? 2 * bounds_.slots : bounds_.slots;
+    const std::size_t used = std::min(queue_.size(), slots);
+    return {.now_ns = now_, .free_slots = slots - used, .actions = {}};
   }
   void answer(const std::optional<dds::Credit>& credit) {
     if (!credit) return;

@@ -45,7 +45,7 @@ TEST(ProtocolModel, SurvivesAnAbort) {
 }
 
 TEST(ProtocolModel, CatchesAServiceThatGrantsPlacesThatItHasNot) {
-  EXPECT_EQ(check(Variant::kCountsPlacesTwice, {.blocks = 4}).complaint, "more blocks than places");
+  EXPECT_EQ(check(Variant::kCountsSlotsTwice, {.blocks = 4}).complaint, "more blocks than places");
 }
 
 TEST(ProtocolModel, CatchesAServiceThatTrustsTheWire) {

@@ -61,12 +61,12 @@ class Channel {
 
 /// The queue behind the intake: checks that it gets the program in order, every block once.
 struct Queue {
-  std::size_t places = 0, queued = 0;
+  std::size_t slots = 0, queued = 0;
   std::uint64_t taken = 0;
   bool has_end = false;
 
   void push(const Accepted& accepted) {
-    ASSERT_LE(queued + accepted.count, places) << "credits promised more than there was room";
+    ASSERT_LE(queued + accepted.count, slots) << "credits promised more than there was room";
     queued += accepted.count;
     for (std::size_t i = 0; i < accepted.count; ++i) {
       const ClBlock& block = accepted.blocks[i];
@@ -82,7 +82,7 @@ struct Queue {
 
 /// Streams `count` blocks through both ends and such a transport into a queue of `places`.
 /// Returns how often the station went back.
-std::uint64_t stream_through(std::uint64_t seed, std::uint64_t count, std::size_t places,
+std::uint64_t stream_through(std::uint64_t seed, std::uint64_t count, std::size_t slots,
                              const Weather& weather) {
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937_64 engine(seed);
@@ -96,10 +96,10 @@ std::uint64_t stream_through(std::uint64_t seed, std::uint64_t count, std::size_
   Channel<dds::SessionRequest> requests(engine, weather);
   Channel<dds::Batch> batches(engine, weather);
   Channel<dds::Credit> credits(engine, weather);
-  Queue queue{.places = places};
+  Queue queue{.slots = slots};
 
   std::int64_t now_ns = 0;
-  const auto around = [&] { return Surroundings{now_ns, queue.places - queue.queued, {}}; };
+  const auto around = [&] { return Surroundings{now_ns, queue.slots - queue.queued, {}}; };
   for (; station.state() != StationState::kComplete; now_ns += kMillisecond) {
     const bool is_stuck = now_ns >= 600'000 * kMillisecond || station.is_over();
     if (is_stuck) ADD_FAILURE() << "stuck at " << queue.taken << ": " << station.message();
@@ -144,8 +144,8 @@ TEST(Session, NothingIsLostAndNothingComesTwiceInAnyWeather) {
     const Weather weather{up_to(0.3), up_to(0.3), up_to(0.2),
                           std::uniform_int_distribution(0, 40)(engine)};
     const std::uint64_t count = std::uniform_int_distribution<std::uint64_t>(1, 1500)(engine);
-    const std::size_t places = std::uniform_int_distribution<std::size_t>(2, 600)(engine);
-    resends += stream_through(seed, count, places, weather);
+    const std::size_t slots = std::uniform_int_distribution<std::size_t>(2, 600)(engine);
+    resends += stream_through(seed, count, slots, weather);
     if (HasFailure()) return;
   }
   EXPECT_GT(resends, 60u) << "the weather was too fair to show anything";

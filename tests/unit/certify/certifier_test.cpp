@@ -37,7 +37,7 @@ TEST(Certifier, GivesACertificateForAWholeProgramInBothTransitions) {
     EXPECT_TRUE(given.is_given()) << to_text(given, model);
     EXPECT_GT(given.pieces, 30U);
     EXPECT_EQ(given.tails_s > 0, transition == Transition::kSmooth);
-    for (const PlacedShare& bound : given.bound) {
+    for (const LocatedShare& bound : given.bound) {
       EXPECT_LE(bound.share.share, 1);
       EXPECT_GT(bound.share.share, 0.3);
     }

@@ -35,11 +35,11 @@ struct Hand {
   }
   /// One order, which the next cycle finds.
   void order(int joint, double velocity) {
-    const int place = joint < kMaxJoints ? joint : joint - kMaxJoints;
+    const int index = joint < kMaxJoints ? joint : joint - kMaxJoints;
     world.in.jog = {.sample = ++sample,
                     .epoch = epoch,
                     .is_tool = joint >= kMaxJoints,
-                    .joint = static_cast<std::uint8_t>(place),
+                    .joint = static_cast<std::uint8_t>(index),
                     .velocity = velocity,
                     .distance = distance,
                     .tool_length_mm = world.machine.tool_length_mm,

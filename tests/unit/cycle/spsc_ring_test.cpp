@@ -63,7 +63,7 @@ TEST(SpscRing, LooksAheadWithoutTaking) {
   EXPECT_EQ(ring.peek(4), nullptr);
   ring.drop(3);
   EXPECT_EQ(*ring.peek(0), 3);
-  EXPECT_EQ(ring.count_free_places(), 3u);
+  EXPECT_EQ(ring.count_free_slots(), 3u);
 }
 
 TEST(SpscRing, LosesAndTearsNothingBetweenTwoThreads) {

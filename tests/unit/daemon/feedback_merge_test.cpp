@@ -330,7 +330,7 @@ TEST(FeedbackMerge, HoldsAJointForTheGroupThatLeavesItOut) {
 
 TEST(FeedbackMerge, CountsTheStopInputOfWhoFindsNoPlace) {
   FeedbackMerge merge;
-  for (std::uint64_t writer = 1; writer <= merge.sources().places.size(); ++writer) {
+  for (std::uint64_t writer = 1; writer <= merge.sources().slots.size(); ++writer) {
     ASSERT_TRUE(merge.take(sample(1, 0b1, 1), writer, 1000));
   }
   dds::DriveFeedback open = sample(1, 0, 1);

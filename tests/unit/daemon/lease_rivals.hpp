@@ -103,7 +103,7 @@ class Rivals {
   bool forgets_the_paused = false;
 
  private:
-  [[nodiscard]] std::size_t place(const Rival& rival) const {
+  [[nodiscard]] std::size_t index_of(const Rival& rival) const {
     return static_cast<std::size_t>(
         std::find_if(rivals.begin(), rivals.end(),
                      [&](const Rival& one) { return one.id == rival.id; }) -
@@ -113,7 +113,8 @@ class Rivals {
     rival.said = rival.check.word(rival.clock + now);
     rival.check.on_said(rival.said, rival.clock + now);
     for (std::size_t to = 0; to < rivals.size(); ++to) {
-      if (rivals[to].knows[place(rival)]) wires[place(rival)][to].send(rival.said, now, engine);
+      if (rivals[to].knows[index_of(rival)])
+        wires[index_of(rival)][to].send(rival.said, now, engine);
     }
   }
   /// Who hears nothing of another one for its lease forgets it, and gets its newest word where it
@@ -123,9 +124,9 @@ class Rivals {
         from.left < 0 ? !(forgets_the_paused && from.is_paused(now) && from.is_paused(now - kS))
                       : now < from.left + 200 * kMs;
     for (std::size_t to = 0; to < rivals.size(); ++to) {
-      if (to == place(from) || rivals[to].knows[place(from)] == is_there) continue;
-      rivals[to].knows[place(from)] = is_there;
-      Wire& wire = wires[place(from)][to];
+      if (to == index_of(from) || rivals[to].knows[index_of(from)] == is_there) continue;
+      rivals[to].knows[index_of(from)] = is_there;
+      Wire& wire = wires[index_of(from)][to];
       wire.in_flight.clear();
       if (is_there) {
         wire.send(from.said, now, engine);
@@ -139,7 +140,7 @@ class Rivals {
     rival.next_look = now + 100 * kMs;
     const std::int64_t time = rival.clock + now;
     for (std::size_t from = 0; from < rivals.size(); ++from) {
-      if (const auto word = wires[from][place(rival)].take(now)) rival.check.hear(*word, time);
+      if (const auto word = wires[from][index_of(rival)].take(now)) rival.check.hear(*word, time);
     }
     rival.check.check(time, now >= rival.off_from);
     if (rival.check.has_to_speak(time)) say(rival);

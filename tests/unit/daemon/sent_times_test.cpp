@@ -13,14 +13,13 @@ namespace {
 TEST(SentTimes, KnowsTheNewestSetpointsAndForgetsOlderOnes) {
   SentTimes times;
   EXPECT_EQ(times.sent_ns(0), 0);
-  for (std::uint64_t cycle = 0; cycle <= SentTimes::kPlaces; ++cycle) {
+  for (std::uint64_t cycle = 0; cycle <= SentTimes::kSlots; ++cycle) {
     times.note(cycle, 1000 + static_cast<std::int64_t>(cycle));
   }
   EXPECT_EQ(times.sent_ns(0), 0);
   EXPECT_EQ(times.sent_ns(1), 1001);
-  EXPECT_EQ(times.sent_ns(SentTimes::kPlaces),
-            1000 + static_cast<std::int64_t>(SentTimes::kPlaces));
-  EXPECT_EQ(times.sent_ns(SentTimes::kPlaces + 1), 0);
+  EXPECT_EQ(times.sent_ns(SentTimes::kSlots), 1000 + static_cast<std::int64_t>(SentTimes::kSlots));
+  EXPECT_EQ(times.sent_ns(SentTimes::kSlots + 1), 0);
 }
 
 TEST(SentTimes, NeverGivesTheTimeOfAnotherSetpoint) {
@@ -34,12 +33,12 @@ TEST(SentTimes, NeverGivesTheTimeOfAnotherSetpoint) {
     }
   });
   int found = 0, wrong = 0;
-  while (newest < SentTimes::kPlaces) std::this_thread::yield();
+  while (newest < SentTimes::kSlots) std::this_thread::yield();
   for (int looks = 0; looks < 300'000; ++looks) {
     const std::uint64_t cycle = newest.load(std::memory_order_acquire);
     // The newest, one in the middle, and the one that the writer is about to take the place of.
     for (const std::uint64_t back :
-         {std::uint64_t{0}, SentTimes::kPlaces / 2, SentTimes::kPlaces - 1}) {
+         {std::uint64_t{0}, SentTimes::kSlots / 2, SentTimes::kSlots - 1}) {
       if (cycle <= back) continue;
       const std::int64_t sent = times->sent_ns(cycle - back);
       found += sent != 0;

@@ -147,8 +147,8 @@ TEST(SetUpJog, NeverTripsTheMonitoringOnAnyShippedMachine) {
     const MachineModel model = config::load_machine(test::shipped_file(name));
     const monitoring::Limits limits = limits_of(name, model);
     for (int n = 0; n < test::draws(3) * (kToolAxisCount + model.joint_count); ++n) {
-      const int place = n % (kToolAxisCount + model.joint_count);
-      const int axis = place < model.joint_count ? place : kMaxJoints + place - model.joint_count;
+      const int index = n % (kToolAxisCount + model.joint_count);
+      const int axis = index < model.joint_count ? index : kMaxJoints + index - model.joint_count;
       JointVector at{};
       for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
         const JointSpec& joint = model.joints[i];

@@ -26,9 +26,9 @@ class SourceReporterTest : public testing::Test {
     return said;
   }
   /// A source that has spoken just now, and from the begin on.
-  DriveSource& source(std::size_t place, std::uint64_t writer, std::uint32_t claimed,
+  DriveSource& source(std::size_t slot, std::uint64_t writer, std::uint32_t claimed,
                       std::uint32_t bound) {
-    DriveSource& source = sources_.places[place];
+    DriveSource& source = sources_.slots[slot];
     source.writer = writer;
     source.group = 3;
     source.claimed_mask = claimed;
@@ -50,7 +50,7 @@ TEST_F(SourceReporterTest, SaysOnceWhoReportsAndWhoIsGone) {
   source(0, 11, 0b11, 0b11);
   EXPECT_EQ(look(), Said{"drive group 3 of process 11 reports b3, b2"});
   EXPECT_EQ(look(), Said{});
-  sources_.places[0] = {};
+  sources_.slots[0] = {};
   EXPECT_EQ(look(), Said{"drive group 3 of process 11 is gone"});
 }
 

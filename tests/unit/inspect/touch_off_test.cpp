@@ -57,12 +57,12 @@ struct Part {
 
 TEST(TouchOff, OfACornerTouchedThreeTwoOnceFindsAnyTiltOfIt) {
   std::mt19937_64 engine(20261127);
-  std::uniform_real_distribution<double> tilt(-8, 8), place(-100, 100), on(5, 60);
+  std::uniform_real_distribution<double> tilt(-8, 8), coordinate(-100, 100), on(5, 60);
   for (int n = 0; n < 200; ++n) {
     SCOPED_TRACE(n);
     Part part;
     part.rotation = turned(tilt(engine), tilt(engine), tilt(engine));
-    part.origin = Vector3(place(engine), place(engine), place(engine));
+    part.origin = Vector3(coordinate(engine), coordinate(engine), coordinate(engine));
     const std::vector<Touch> touches{part.ball({5, 5, 0}, 2),
                                      part.ball({5 + on(engine), 6, 0}, 2),
                                      part.ball({7, 5 + on(engine), 0}, 2),

@@ -94,19 +94,19 @@ TEST(KeepOut, MissesNothingThatACurveEntersBetweenTwoSamples) {
   for (int draw = 0; draw < 20000; ++draw) {
     const double c[2][4] = {{at(engine), slope(engine), bend(engine), bend(engine)},
                             {at(engine) - 15, slope(engine), bend(engine), bend(engine)}};
-    const auto place = [&c](double t) {
+    const auto position = [&c](double t) {
       const auto value = [t](const double* k) { return k[0] + t * (k[1] + t * (k[2] + t * k[3])); };
       return JointVector{value(c[0]), 0, value(c[1])};
     };
     bool enters = false;
     for (int n = 0; n <= 1000 && !enters; ++n)
-      enters = keep_out_at(keep_out, place(n / 1000.0)) >= 0;
+      enters = keep_out_at(keep_out, position(n / 1000.0)) >= 0;
     JointVector off{};
     for (const int i : {0, 1}) {
       const double max = std::max(std::abs(2 * c[i][2]), std::abs(2 * c[i][2] + 6 * c[i][3]));
       off[static_cast<std::size_t>(2 * i)] = max / 8;
     }
-    const bool is_found = keep_out_between(keep_out, place(0), place(1), off).box >= 0;
+    const bool is_found = keep_out_between(keep_out, position(0), position(1), off).box >= 0;
     ASSERT_TRUE(is_found || !enters) << "seed " << kSeed << ", draw " << draw;
     inside += enters ? 1 : 0;
     passed += is_found ? 0 : 1;

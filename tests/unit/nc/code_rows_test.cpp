@@ -43,7 +43,7 @@ std::string program_of(const GRow& row) {
     case GKind::kHome:
     case GKind::kReference:
       return "G91 " + code + " Z0.\nG90\n" + above + "G1 X9.\n";
-    case GKind::kMachinePlace:
+    case GKind::kMachinePosition:
       return code + " G0 Z0.\n" + above + "G1 X9.\n";
     case GKind::kPlaneTilt:
       return "G43 H1\n" + code + " X0. Y0. Z0. I0. J30. K0.\nG53.1\nG0 X0. Y0. Z20.\nG1 X9.\nG69\n";
@@ -98,7 +98,7 @@ TEST(CodeRows, OfSiemensRunWhereTheyMayStandOrAreRefused) {
       body = above + code + (row->value > 2 ? " X9 CR=9\n" : " X9\n");
     if (row->kind == GKind::kFeed) body = above + "S100 M3\n" + code + " G1 X9 F5\n";
     if (row->kind == GKind::kDwell) body = above + code + " F0.1\nG1 X9\n";
-    if (row->kind == GKind::kMachinePlace) body = code + " G0 Z0\n" + above + "G1 X9\n";
+    if (row->kind == GKind::kMachinePosition) body = code + " G0 Z0\n" + above + "G1 X9\n";
     if (row->kind == GKind::kWorkOffset) body = code + "\n" + above + "G1 X9\n";
     // The head of these programs is metric.
     const ReadText read =

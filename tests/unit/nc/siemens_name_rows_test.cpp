@@ -88,7 +88,7 @@ void expect_row(const NameRow& row) {
     case NameKind::kMachine:
       EXPECT_TRUE(says(read_vectors(name), "in the axes of the machine")) << name;
       break;
-    case NameKind::kMachinePlace: {
+    case NameKind::kMachinePosition: {
       const ReadText read = read_siemens(name + " G0 Z0\nG0 X0 Y0 Z20\nG1 X9\n");
       EXPECT_EQ(read.error, "") << name;
       EXPECT_EQ(read.motion().size(), 2U) << name;

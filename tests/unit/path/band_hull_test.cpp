@@ -15,12 +15,12 @@ constexpr double kBegin = 0.3;  // u of the span
 double deviation_at(const BandPolyline& line, const PoseQuartic& c, double x) {
   const double u = kBegin + x;
   const std::int64_t i = line.segment_at(u, 0);
-  const Vector6 place = line.at(u, i);
+  const Vector6 point = line.at(u, i);
   double tip = 0, axis = 0;
   for (std::size_t d = 0; d < 6; ++d) {
     double value = c[d][4];
     for (std::size_t k = 4; k-- > 0;) value = value * x + c[d][k];
-    (d < 3 ? tip : axis) += (value - place[d]) * (value - place[d]);
+    (d < 3 ? tip : axis) += (value - point[d]) * (value - point[d]);
   }
   const BandVertex& end = line[i + 1];
   const double share = line.share_of(end);

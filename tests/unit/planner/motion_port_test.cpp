@@ -153,7 +153,7 @@ TEST(MotionPort, TheMotionAheadIsWhatIsRunAsFarAsTheNextRest) {
   }
   ASSERT_NE(tail, nullptr);
   EXPECT_EQ(tail->sequence, 41U);
-  EXPECT_EQ(ahead.places(), 9U) << "of the rest, and of what is skipped on the way";
+  EXPECT_EQ(ahead.slots(), 9U) << "of the rest, and of what is skipped on the way";
   seen.push_back(50);  // it starts from rest
   EXPECT_EQ(seen, script.run());
 }

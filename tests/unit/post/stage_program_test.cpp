@@ -151,8 +151,8 @@ TEST(DriveLine, BoundsWhatTheJointsDoWhileDrivesRunStraight) {
       if (!line.is_known) continue;
       ++known;
       for (int k = 1; k < kParts; ++k) {
-        const auto at = [&](int place) {
-          return joints_of(model, test::between(a, b, static_cast<double>(place) / kParts));
+        const auto at = [&](int step) {
+          return joints_of(model, test::between(a, b, static_cast<double>(step) / kParts));
         };
         const JointVector before = at(k - 1), here = at(k), after = at(k + 1);
         for (const std::size_t i : {s, phi}) {

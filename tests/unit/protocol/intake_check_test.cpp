@@ -175,7 +175,7 @@ TEST_F(Intake, AQueueWithoutRoomEndsTheSessionInsteadOfLosingBlocksInSilence) {
 
 TEST_F(Intake, CreditsNeverGoBack) {
   static_cast<void>(open());
-  around_.free_places = 10;
+  around_.free_slots = 10;
   EXPECT_EQ(open().credits, 99u);
 }
 
@@ -201,7 +201,7 @@ TEST_F(Intake, RepeatsTheCreditWhileBatchesKeepComing) {
 
 TEST_F(Intake, GrantsCreditAtOnceWhenManyPlacesCameFree) {
   static_cast<void>(open());
-  around_.free_places += IntakeCheck::kCreditStep;
+  around_.free_slots += IntakeCheck::kCreditStep;
   const auto credit = check_.due_credit(around_);
   ASSERT_TRUE(credit);
   EXPECT_EQ(credit->credits, 99u + IntakeCheck::kCreditStep);

@@ -36,7 +36,7 @@ class Intake : public testing::Test {
   }
   std::optional<Credit> send(const Batch& batch) {
     auto answer = check_.on_batch(batch, around_, accepted_);
-    around_.free_places -= accepted_.count;
+    around_.free_slots -= accepted_.count;
     return answer;
   }
   /// A batch of `count` good blocks whose block `bad` is spoilt by `spoil`, CRC right.
@@ -50,7 +50,7 @@ class Intake : public testing::Test {
 
   MachineModel model_ = test::lai_machine();
   IntakeCheck check_{model_, {{1, 80.0}}, 99};
-  Surroundings around_{.now_ns = 0, .free_places = 100, .actions = {.is_there = true}};
+  Surroundings around_{.now_ns = 0, .free_slots = 100, .actions = {.is_there = true}};
   Accepted accepted_;
   std::uint64_t session_ = kSession;
 };

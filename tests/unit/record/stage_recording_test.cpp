@@ -61,8 +61,8 @@ TEST_F(StageRecording, HasTheDrivesBehindTheJoints) {
   for (const CycleRecord& record : records) {
     ASSERT_TRUE(reader.next(row).value_or(false));
     ASSERT_EQ(row.joints, record.joints);
-    ASSERT_EQ(row.places, limited_of(model, record.joints, record.setpoint.position));
-    ASSERT_EQ(drives_at(model, row.places), record.setpoint.position);
+    ASSERT_EQ(row.positions, limited_of(model, record.joints, record.setpoint.position));
+    ASSERT_EQ(drives_at(model, row.positions), record.setpoint.position);
     ASSERT_EQ(row.velocity[5], record.setpoint.velocity[kFirst]);
     ASSERT_EQ(row.velocity[6], record.setpoint.velocity[kSecond]);
   }
@@ -83,7 +83,7 @@ TEST_F(StageRecording, GivesJointsWhereOnlyTheDrivesWereSeen) {
   RecordingRow row;
   ASSERT_TRUE(reader->next(row).value_or(false));
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(row.joints[i], q[i], 1e-12);
-  EXPECT_EQ(drives_at(model, row.places), u);
+  EXPECT_EQ(drives_at(model, row.positions), u);
 }
 
 TEST_F(StageRecording, GivesDrivesWhereOnlyTheJointsWereWritten) {
@@ -94,7 +94,7 @@ TEST_F(StageRecording, GivesDrivesWhereOnlyTheJointsWereWritten) {
   ASSERT_TRUE(reader.has_value()) << reader.error().text();
   RecordingRow row;
   ASSERT_TRUE(reader->next(row).value_or(false));
-  EXPECT_EQ(row.places, limited_of(model, JointVector{10, 20, 30, 0.4, 0.5}));
+  EXPECT_EQ(row.positions, limited_of(model, JointVector{10, 20, 30, 0.4, 0.5}));
 }
 
 TEST_F(StageRecording, NeedsTheJointsOrTheDrives) {

@@ -16,7 +16,7 @@ class Derived : public testing::Test {
     row.cycle = cycle;
     row.flags = flags;
     row.joints[0] = q;
-    row.places = limited_of(model_, row.joints);
+    row.positions = limited_of(model_, row.joints);
     derived_.add(row);
   }
   [[nodiscard]] double share(std::size_t of) const { return derived_.shares()[0][of]; }

@@ -22,7 +22,7 @@ using test::TextFile;
   row.line = 40;
   row.sequence = 4;
   row.joints = {10, 20 + 0.01 * static_cast<double>(cycle), 30, 0.4, 0.5};
-  row.places = limited_of(model, row.joints);
+  row.positions = limited_of(model, row.joints);
   row.velocity[1] = 10;
   row.feedback = row.joints;
   row.feedback_cycle = cycle;

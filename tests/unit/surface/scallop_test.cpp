@@ -74,9 +74,9 @@ TEST(Scallop, OnASphereIsThatOfBallsOnAGreatCircle) {
 
 /// Distance from `point` to where the middle of the ball runs on the line at `place`.
 double distance_to_pass(const ContactRule& rule, const CoverOptions& options, const Vector3& point,
-                        double place) {
+                        double parameter) {
   const auto distance = [&](double u) {
-    const auto c = find_contact(rule, u, place);
+    const auto c = find_contact(rule, u, parameter);
     return (c->shape.at + rule.cutter.radius_mm() * c->shape.normal - point).norm();
   };
   const auto [begin, end] = options.range_u;
@@ -106,7 +106,7 @@ TEST(Scallop, LeavesNothingHigherThanItsBoundOnAWavyPatch) {
     double highest = 0;
     for (int i = 0; i < 24; ++i) {
       const std::size_t line = 1 + draw() % (path->lines.size() - 1);
-      const double a = path->lines[line - 1].place, b = path->lines[line].place;
+      const double a = path->lines[line - 1].parameter, b = path->lines[line].parameter;
       // Away from the ends of the lines, where material beside them is not this pass's.
       const double u =
           options.range_u[0] + (0.05 + 0.9 * any(draw)) * (options.range_u[1] - options.range_u[0]);

@@ -48,7 +48,7 @@ TEST(SurfacePath, OneWayAndAlongVRunsEveryLineForward) {
   for (const SurfacePath::Line& line : path->lines) {
     EXPECT_EQ(line.contacts.front().v, options.range_v[0]);
     EXPECT_EQ(line.contacts.back().v, options.range_v[1]);
-    EXPECT_EQ(line.contacts.front().u, line.place);
+    EXPECT_EQ(line.contacts.front().u, line.parameter);
     EXPECT_GT(line.contacts[1].feed.dot(line.contacts[2].shape.at - line.contacts[0].shape.at), 0);
   }
 }

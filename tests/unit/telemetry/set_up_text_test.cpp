@@ -17,12 +17,12 @@ namespace {
 /// A table of frames anywhere, with its seed.
 WorkFrames drawn_frames(unsigned seed, int count) {
   std::mt19937_64 engine(seed);
-  std::uniform_real_distribution<double> place(-1e5, 1e5), angle(-360, 360);
+  std::uniform_real_distribution<double> coordinate(-1e5, 1e5), angle(-360, 360);
   WorkFrames frames;
   for (int i = 0; i < count; ++i) {
     WorkFrame row;
     row.number = static_cast<std::uint8_t>(1 + engine() % WorkFrames::kMax);
-    for (double& value : row.origin_mm) value = place(engine);
+    for (double& value : row.origin_mm) value = coordinate(engine);
     for (double& value : row.rotation_deg) value = angle(engine);
     put_text("vice " + std::to_string(i), row.name);
     EXPECT_EQ(frames.apply({FrameWord::kSet, row}), FrameFault::kNone);

@@ -62,13 +62,13 @@ export class Display {
   // Strips of a joint's bar, where keep-out boxes name it.
   boxesOf(i, joint) {
     const [low, high] = joint.soft_limits ?? joint.travel;
-    const place = (value) => 100 * Math.min(Math.max((value - low) / (high - low), 0), 1);
+    const percent = (value) => 100 * Math.min(Math.max((value - low) / (high - low), 0), 1);
     return this.scene.keep_out.flatMap((box) => {
       const own = box.joints.find((one) => one.joint === i);
       if (!own) return [];
       const strip = element("i", { class: "keep-out", title: `keep-out box ${box.name}` });
-      strip.style.left = `${place(own.min)}%`;
-      strip.style.width = `${place(own.max) - place(own.min)}%`;
+      strip.style.left = `${percent(own.min)}%`;
+      strip.style.width = `${percent(own.max) - percent(own.min)}%`;
       return [{ strip, others: box.joints.filter((one) => one.joint !== i) }];
     });
   }

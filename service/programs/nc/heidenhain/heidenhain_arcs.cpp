@@ -34,10 +34,10 @@ Expected<PolarEnd, cl::Refusal> end_behind(const State& s, double angle_deg) {
   if (!(angle_deg != 0 && std::abs(angle_deg) < kLongest_deg)) {
     return refuse("IPA of CP: an arc of no turn, or of more than a thousand");
   }
-  const double x = *s.place.tip[0] - *s.modes.pole[0], y = *s.place.tip[1] - *s.modes.pole[1];
+  const double x = *s.position.tip[0] - *s.modes.pole[0], y = *s.position.tip[1] - *s.modes.pole[1];
   const double turns = std::abs(angle_deg) / kTurn_deg;
   const int circles = static_cast<int>(std::ceil(turns)) - 1;
-  if (turns == std::floor(turns)) return PolarEnd{*s.place.tip[0], *s.place.tip[1], circles};
+  if (turns == std::floor(turns)) return PolarEnd{*s.position.tip[0], *s.position.tip[1], circles};
   const double rad = units::rad_from_deg(std::remainder(angle_deg, kTurn_deg));
   const double c = std::cos(rad), sn = std::sin(rad);
   return PolarEnd{*s.modes.pole[0] + c * x - sn * y, *s.modes.pole[1] + sn * x + c * y, circles};
@@ -46,7 +46,7 @@ Expected<PolarEnd, cl::Refusal> end_behind(const State& s, double angle_deg) {
 /// PA: at that angle from X.
 PolarEnd end_at(const State& s, double angle_deg) {
   const double radius =
-      std::hypot(*s.place.tip[0] - *s.modes.pole[0], *s.place.tip[1] - *s.modes.pole[1]);
+      std::hypot(*s.position.tip[0] - *s.modes.pole[0], *s.position.tip[1] - *s.modes.pole[1]);
   const double rad = units::rad_from_deg(angle_deg);
   return {*s.modes.pole[0] + radius * std::cos(rad), *s.modes.pole[1] + radius * std::sin(rad), 0};
 }
@@ -58,7 +58,7 @@ cl::Outcome add_polar_end(const State& s, Line& iso) {
   if ((by == nullptr) == (at == nullptr) || iso.find("X") != nullptr || iso.find("Y") != nullptr) {
     return refuse("CP needs one angle, PA or IPA, and neither X nor Y");
   }
-  if (!s.place.tip[0] || !s.place.tip[1]) {
+  if (!s.position.tip[0] || !s.position.tip[1]) {
     return refuse("CP, but where it begins is not known here",
                   "write an L with X, Y and Z before it", "not known");
   }
@@ -88,9 +88,9 @@ cl::Outcome set_pole(State& s, const Line& line) {
     const Word* const word = line.find(k == 0 ? "X" : "Y");
     if (word == nullptr) continue;
     const bool is_relative = word->distance_mode == Word::DistanceMode::kIncremental;
-    if (is_relative && !s.place.tip[k])
+    if (is_relative && !s.position.tip[k])
       return refuse("CC from a place that is not known here", "write X and Y of CC as absolute");
-    s.modes.pole[k] = is_relative ? *s.place.tip[k] + word->number : word->number;
+    s.modes.pole[k] = is_relative ? *s.position.tip[k] + word->number : word->number;
   }
   return {};
 }

@@ -180,8 +180,8 @@ cl::Outcome run_words(State& s, const Line& line) {
     if (auto taken = take_plane_angles(s, iso); !taken) return taken;
     const bool goes_on = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
     if (!goes_on) return act_behind(s, iso);
-    auto done = translated.is_machine_place
-                    ? move_to_machine_place(s, iso, MachinePlace::kAsWritten)
+    auto done = translated.is_machine_position
+                    ? move_to_machine_position(s, iso, MachinePosition::kAsWritten)
                     : move(s, iso);
     if (!done) return done;
   }

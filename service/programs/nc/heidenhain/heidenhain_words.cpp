@@ -27,7 +27,7 @@ bool is_feed_of_m128(const Line& line, std::size_t at) {
 
 /// M94: rotary positions are shown, and count, within a turn from here on.
 void reduce_rotary(State& s) {
-  for (RotaryAt& at : s.place.rotary) {
+  for (RotaryAt& at : s.position.rotary) {
     if (at.deg) at.deg = *at.deg - 360 * std::floor(*at.deg / 360);
   }
 }
@@ -74,7 +74,7 @@ cl::Outcome translate(State& s, const Line& line, Translated& out) {
     } else if (code == 140) {
       out.retracts = true;
     } else if (code == 91) {
-      out.is_machine_place = true;
+      out.is_machine_position = true;
     } else if (code == 128 || code == 129) {
       auto done =
           code == 128 ? switch_on(s, line, Orientation::Between::kEvenJoints) : switch_off(s, line);

@@ -8,7 +8,7 @@ namespace meridian::nc {
 /// A line of Klartext as ISO says it.
 struct Translated {
   Line iso;
-  bool is_machine_place = false;
+  bool is_machine_position = false;
   bool calls_cycle = false;  ///< M99, M89
   bool retracts = false;     ///< M140
 };

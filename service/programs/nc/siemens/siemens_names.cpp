@@ -27,7 +27,7 @@ constexpr std::array kNames = std::to_array<NameRow>({
     {"ORIWCS", NameKind::kPart},
     {"ORIMKS", NameKind::kMachine},
     {"ORIMCS", NameKind::kMachine},
-    {"SUPA", NameKind::kMachinePlace},
+    {"SUPA", NameKind::kMachinePosition},
     {"ACC", NameKind::kNothing},
     {"ADIS", NameKind::kNothing},
     {"ADISPOS", NameKind::kNothing},
@@ -200,8 +200,8 @@ cl::Outcome take_name(State& s, const Line& line, const Line::Name& name, NameOu
     case NameKind::kMachine:
       s.modes.orientation.axes = Orientation::Axes::kOfMachine;
       return {};
-    case NameKind::kMachinePlace:
-      out.has_machine_place = true;
+    case NameKind::kMachinePosition:
+      out.has_machine_position = true;
       return {};
     case NameKind::kNothing:
       s.cl.summary.skip(name.name, line.number);

@@ -16,7 +16,7 @@ enum class NameKind : std::uint8_t {
   kEvenJoints,   ///< ORIAXES
   kPart,         ///< ORIWKS: directions of the part
   kMachine,      ///< ORIMKS
-  kMachinePlace,
+  kMachinePosition,
   kNothing,  ///< says how the control smooths or what it shows
   kFrame,
   kModalCall,  ///< MCALL
@@ -34,8 +34,8 @@ struct NameRow {
 
 /// What the names of a line say about its other words.
 struct NameOutcome {
-  bool has_machine_place = false;  ///< SUPA: they are places of the machine
-  bool has_frame = false;          ///< they are those of a frame, which is in force now
+  bool has_machine_position = false;  ///< SUPA: they are places of the machine
+  bool has_frame = false;             ///< they are those of a frame, which is in force now
   enum class Holes : std::uint8_t {
     kAsBefore,
     kHere,          ///< CYCLE81(...): one, where the tool stands

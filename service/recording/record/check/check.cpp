@@ -36,7 +36,7 @@ class Survey {
       begins_.back().cycle = row.cycle;  // still at rest there
     }
     for (int i = 0; i < limited_count(model_); ++i) {
-      largest_[i] = std::max(largest_[i], std::abs(row.places[i]));
+      largest_[i] = std::max(largest_[i], std::abs(row.positions[i]));
     }
     if (path_.has_begin()) find_ends(row, has_moved);
     if ((row.flags & kSetpointDryEnabled) != 0 && dry_rows_++ == 0) first_dry_ = row.cycle;

@@ -14,7 +14,7 @@ using text::json_quoted;
 
 namespace {
 
-[[nodiscard]] std::string place(const Peak& peak) {
+[[nodiscard]] std::string location(const Peak& peak) {
   std::string text;
   append(text, "cycle %llu, line %u", static_cast<Count>(peak.cycle), peak.line);
   return text;
@@ -33,8 +33,8 @@ void append_peak(std::string& text, const char* name, const Peak& peak, double s
 void append_deviation(std::string& text, const char* name, const Peak& at, const Peak& between,
                       double scale, const char* unit, double tolerance) {
   append(text, "%-10s %.6f %s at the setpoints (%s), %.6f %s between; tolerance %.6g %s", name,
-         at.value * scale, unit, place(at).c_str(), between.value * scale, unit, tolerance * scale,
-         unit);
+         at.value * scale, unit, location(at).c_str(), between.value * scale, unit,
+         tolerance * scale, unit);
 }
 
 }  // namespace
@@ -124,7 +124,7 @@ std::string to_text(const CheckReport& report) {
       append(text, "\nunwound    %llu times, off the part", static_cast<Count>(report.unwindings));
     }
     append(text, "\nfeed       %.6f x the programmed feed (%s), tip speed up to %.3f mm/min\n",
-           report.feed.value, place(report.feed).c_str(),
+           report.feed.value, location(report.feed).c_str(),
            units::per_min_from_per_s(report.tip_speed_mm_per_s.value));
   }
   append(text, "joint      velocity acceleration     jerk  (1 is the limit)      range\n");

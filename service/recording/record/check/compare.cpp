@@ -88,16 +88,16 @@ class Comparison {
   void check(const RecordingRow& a, const RecordingRow& b) {
     bool is_different = false;
     for (int i = 0; i < limited_count(model_); ++i) {
-      if (is_same_bits(a.places[i], b.places[i])) continue;
+      if (is_same_bits(a.positions[i], b.positions[i])) continue;
       report_.largest_difference =
-          std::max(report_.largest_difference, std::abs(a.places[i] - b.places[i]));
+          std::max(report_.largest_difference, std::abs(a.positions[i] - b.positions[i]));
       if (!is_different && report_.different == 0) {
         report_.first_difference_a = a.cycle;
         report_.first_difference_b = b.cycle;
         report_.first_line = a.line;
         report_.first_joint = i;
-        report_.first_a = a.places[i];
-        report_.first_b = b.places[i];
+        report_.first_a = a.positions[i];
+        report_.first_b = b.positions[i];
         report_.first_plan_time_s = a.plan_time_s;
       }
       is_different = true;

@@ -37,7 +37,7 @@ void JointCheck::note(Excess& excess, double use, bool is_over) const {
 }
 
 void JointCheck::check_rates(int joint) {
-  const auto q = [this, joint](int back) { return rows_[kDepth - 1 - back].places[joint]; };
+  const auto q = [this, joint](int back) { return rows_[kDepth - 1 - back].positions[joint]; };
   const JointLimits& limits = limited_spec(model_, joint).limits;
   // Differences reach back over `order` rows; a FaultStop among them has its own limits.
   bool is_fault = false;
@@ -67,7 +67,7 @@ void JointCheck::check_rates(int joint) {
 /// Inside the travel of the machine, and inside the soft limits of this cycle or no farther out
 /// than the cycle before.
 void JointCheck::check_travel(int joint) {
-  const double q = rows_.back().places[joint];
+  const double q = rows_.back().positions[joint];
   const JointLimits& whole = limited_spec(model_, joint).limits;
   const double beyond = std::max(whole.travel_min - q, q - whole.travel_max);
   if (beyond > kTravelMargin) return note(outside_[joint], beyond, true);
@@ -76,7 +76,7 @@ void JointCheck::check_travel(int joint) {
   const SoftLimits::Row& soft = soft_limits_.front().limits.rows()[static_cast<std::size_t>(joint)];
   if (!soft.is_set || run_ < 2) return;
   const auto outside = [&soft](double at) { return std::max(soft.min - at, at - soft.max); };
-  const double before = outside(rows_[kDepth - 2].places[joint]);
+  const double before = outside(rows_[kDepth - 2].positions[joint]);
   note(outside_[joint], outside(q), outside(q) > std::max(kTravelMargin, before + kOutside));
 }
 
@@ -100,7 +100,7 @@ void JointCheck::check_velocity(int joint) {
   const JointLimits& limits = limited_spec(model_, joint).limits;
   const bool is_fault = ((before.flags | middle.flags | after.flags) & kSetpointFaultStop) != 0;
   const double jerk = is_fault ? limits.fault_jerk : limits.jerk;
-  const double central = (after.places[joint] - before.places[joint]) / (2 * period_);
+  const double central = (after.positions[joint] - before.positions[joint]) / (2 * period_);
   const double error = std::abs(middle.velocity[joint] - central);
   const double bound = jerk * period_ * period_ / 6;
   const double allowed =
@@ -115,7 +115,7 @@ void JointCheck::check_stage(const RecordingRow& row) {
   const LimitedVector wanted = limited_of(model_, row.joints);
   double apart = 0;
   for (int i = model_.joint_count; i < limited_count(model_); ++i) {
-    apart = std::max(apart, std::abs(row.places[i] - wanted[i]));
+    apart = std::max(apart, std::abs(row.positions[i] - wanted[i]));
   }
   stage_use_.apart_mm.raise(apart, row.cycle, row.line);
   note(unfit_, apart, !(apart <= kStageFit_mm));
@@ -147,7 +147,7 @@ void JointCheck::add(const RecordingRow& row, bool has_velocity) {
     if (is_known) check_keep_out(soft_limits_.front().limits.keep_out());
   }
   for (int i = 0; i < limited_count(model_); ++i) {
-    const double q = row.places[i];
+    const double q = row.positions[i];
     const JointSpec& spec = limited_spec(model_, i);
     use_[i].low = has_row_ ? std::min(use_[i].low, q) : q;
     use_[i].high = has_row_ ? std::max(use_[i].high, q) : q;

@@ -10,8 +10,8 @@
 namespace meridian::record {
 namespace {
 
-constexpr double kPlace_mm = 1e-11;  // of the tip, by rounding of the joints
-constexpr double kMinFeed = 1e-12;   // mm/s
+constexpr double kPosition_mm = 1e-11;  // of the tip, by rounding of the joints
+constexpr double kMinFeed = 1e-12;      // mm/s
 constexpr double kMinTurn_rad_per_s = 1e-9;
 /// In inverse time blocks within this way of a place say how fast tip and axis may be there.
 constexpr double kSpeedReach_mm = 5;
@@ -79,7 +79,7 @@ void SpeedCheck::add(const ToolPose& from, const ToolPose& to, PathMatching::Pos
     allowed = std::min(allowed, model_.max_feed_mm_per_s);
   }
   // At an override of 0 the tip stands but for the last bit of its place.
-  const double use = std::max(0.0, speed - kPlace_mm / period_) / std::max(allowed, kMinFeed);
+  const double use = std::max(0.0, speed - kPosition_mm / period_) / std::max(allowed, kMinFeed);
   feed_.raise(use, cycle, line);
   if (use > 1 + kRoundingShare) feed_over_.add(use, cycle, line);
   const double rate = angle_between(from.axis, to.axis) / period_;

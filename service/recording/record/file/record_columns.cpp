@@ -24,14 +24,15 @@ void RecordColumns::put(CsvRow& row, const CycleRecord& record) const noexcept {
   const Setpoint& setpoint = record.setpoint;
   row.put_integer(setpoint.cycle).put(',').put_integer(setpoint.due_ns);
   row.put(',').put_integer(setpoint.line).put(',').put(word(record.motion));
-  const auto put_places = [&](const JointVector& joints, const JointVector& drives) {
+  const auto put_positions = [&](const JointVector& joints, const JointVector& drives) {
     for (int i = 0; i < joint_count_; ++i) row.put(',').put_real(joints[i]);
     if (!has_stage_) return;
     row.put(',').put_real(drives[stage_.linear_joint]);
     row.put(',').put_real(drives[stage_.rotary_joint]);
   };
-  put_places(record.joints, setpoint.position);
-  put_places(stage::joint_velocity_of(stage_, record.joints, setpoint.velocity), setpoint.velocity);
+  put_positions(record.joints, setpoint.position);
+  put_positions(stage::joint_velocity_of(stage_, record.joints, setpoint.velocity),
+                setpoint.velocity);
   row.put(',').put_integer(record.sequence).put(',').put(word(record.state));
   row.put(',').put_real(record.plan_time_s).put(',').put_real(record.rate);
   row.put(',').put_integer(setpoint.epoch).put(',').put_integer(setpoint.flags);

@@ -25,11 +25,11 @@ template <class Word>
 }
 
 /// Finds the place of a joint by its name; "none" is -1.
-[[nodiscard]] bool find_place(const std::vector<std::string>& names, std::string_view wanted,
-                              int& place) noexcept {
+[[nodiscard]] bool find_index(const std::vector<std::string>& names, std::string_view wanted,
+                              int& index) noexcept {
   const auto found = std::find(names.begin(), names.end(), wanted);
-  place = found != names.end() ? static_cast<int>(found - names.begin()) : -1;
-  return place >= 0 || wanted == "none";
+  index = found != names.end() ? static_cast<int>(found - names.begin()) : -1;
+  return index >= 0 || wanted == "none";
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ Column find_column(std::string_view name, const MachineModel& model) {
   }
   for (int i = 0; i < limited_count(model); ++i) {
     const JointSpec& spec = limited_spec(model, i);
-    if (name == position_column(spec)) return {Field::kPlace, i, std::string(name)};
+    if (name == position_column(spec)) return {Field::kPosition, i, std::string(name)};
     if (name == velocity_column(spec)) return {Field::kVelocity, i, std::string(name)};
   }
   for (int i = 0; i < model.joint_count; ++i) {
@@ -72,7 +72,7 @@ Column find_column(std::string_view name, const MachineModel& model) {
 
 bool read_field(const Column& column, std::string_view text, const std::vector<std::string>& names,
                 RecordingRow& row) {
-  const auto place = static_cast<std::size_t>(column.place);
+  const auto index = static_cast<std::size_t>(column.index);
   switch (column.field) {
     case Field::kSkip:
       return true;
@@ -84,10 +84,10 @@ bool read_field(const Column& column, std::string_view text, const std::vector<s
       return parse(text, row.line);
     case Field::kKind:
       return take(find_motion_kind(text), row.kind);
-    case Field::kPlace:
-      return parse(text, row.places[column.place]);
+    case Field::kPosition:
+      return parse(text, row.positions[column.index]);
     case Field::kVelocity:
-      return parse(text, row.velocity[column.place]);
+      return parse(text, row.velocity[column.index]);
     case Field::kSequence:
       return parse(text, row.sequence);
     case Field::kState:
@@ -105,22 +105,22 @@ bool read_field(const Column& column, std::string_view text, const std::vector<s
     case Field::kComputation:
       return parse(text, row.computation_ns);
     case Field::kFeedback:
-      return text::read_number(text, row.feedback[place]);
+      return text::read_number(text, row.feedback[index]);
     case Field::kFeedbackCycle:
       return parse(text, row.feedback_cycle);
     case Field::kFeedbackAge:
       return parse(text, row.feedback_age_ns);
     case Field::kStatusword:
-      return parse(text, row.statusword[place]);
+      return parse(text, row.statusword[index]);
     case Field::kDriveError:
-      return parse(text, row.drive_error[place]);
+      return parse(text, row.drive_error[index]);
     case Field::kEmergencyStop:
       row.is_emergency_stop = text == "1";
       return row.is_emergency_stop || text == "0";
     case Field::kAlarm:
       return take(find_alarm(text), row.alarm);
     case Field::kAlarmJoint:
-      return find_place(names, text, row.alarm_joint);
+      return find_index(names, text, row.alarm_joint);
   }
   return false;
 }

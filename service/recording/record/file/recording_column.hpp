@@ -18,7 +18,7 @@ enum class Field : std::uint8_t {
   kDue,
   kLine,
   kKind,
-  kPlace,
+  kPosition,
   kVelocity,
   kSequence,
   kState,
@@ -40,7 +40,7 @@ enum class Field : std::uint8_t {
 
 struct Column {
   Field field = Field::kSkip;
-  int place = 0;  ///< in limited.hpp; of what drives report, the drive
+  int index = 0;  ///< in limited.hpp; of what drives report, the drive
   std::string name;
 };
 

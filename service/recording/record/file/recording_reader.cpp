@@ -48,15 +48,15 @@ class RecordingReader::Impl {
 
   /// Fills in joints from drives, or drives from joints.
   void complete(RecordingRow& row) const noexcept {
-    std::copy_n(row.places.begin(), joint_count, row.joints.begin());
+    std::copy_n(row.positions.begin(), joint_count, row.joints.begin());
     if (stage.kind == StageKind::kIdentity) return;
-    double* const drives = row.places.data() + joint_count;
+    double* const drives = row.positions.data() + joint_count;
     if (!has_joints) {
       JointVector u = row.joints;
       u[stage.linear_joint] = drives[0];
       u[stage.rotary_joint] = drives[1];
       row.joints = stage::joints_of(stage, u);
-      std::copy_n(row.joints.begin(), joint_count, row.places.begin());
+      std::copy_n(row.joints.begin(), joint_count, row.positions.begin());
     } else if (!has_drives) {
       const JointVector u = stage::drives_of(stage, row.joints);
       drives[0] = u[stage.linear_joint];
@@ -82,10 +82,10 @@ class RecordingReader::Impl {
       has_cycle |= column.field == Field::kCycle;
       has_due |= column.field == Field::kDue;
       has_plan_time |= column.field == Field::kPlanTime;
-      if (column.field == Field::kPlace) positions |= 1U << column.place;
-      if (column.field == Field::kVelocity) velocities |= 1U << column.place;
-      if (column.field == Field::kFeedback) feedbacks |= 1U << column.place;
-      if (column.field == Field::kStatusword) statuswords |= 1U << column.place;
+      if (column.field == Field::kPosition) positions |= 1U << column.index;
+      if (column.field == Field::kVelocity) velocities |= 1U << column.index;
+      if (column.field == Field::kFeedback) feedbacks |= 1U << column.index;
+      if (column.field == Field::kStatusword) statuswords |= 1U << column.index;
       has_state |= column.field == Field::kState;
       has_kind |= column.field == Field::kKind;
       has_rate |= column.field == Field::kRate;

@@ -32,7 +32,7 @@ struct RecordingRow {
   double rate = 1;
   JointVector joints{};
   /// Joints, then the drives of the stage; of a recording without their columns as they must be.
-  LimitedVector places{};
+  LimitedVector positions{};
   LimitedVector velocity{};
 
   /// What drives reported: of the flight recorder and, in part, of `meridian record`. Drive

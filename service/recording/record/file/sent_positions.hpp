@@ -14,8 +14,8 @@ namespace meridian::record {
 [[nodiscard]] inline double sent_position(const RecordingRow& row, const MachineModel& model,
                                           int i) noexcept {
   const auto first = static_cast<std::size_t>(model.joint_count);
-  if (has_stage(model) && i == model.stage.linear_joint) return row.places[first];
-  if (has_stage(model) && i == model.stage.rotary_joint) return row.places[first + 1];
+  if (has_stage(model) && i == model.stage.linear_joint) return row.positions[first];
+  if (has_stage(model) && i == model.stage.rotary_joint) return row.positions[first + 1];
   return row.joints[static_cast<std::size_t>(i)];
 }
 

@@ -131,9 +131,9 @@ void print_shares(std::FILE* out, const char* block, const MachineModel& model, 
 void print_side(std::FILE* out, const char* block, double left, const MachineModel& model,
                 int drive) {
   const JointSpec& spec = drive_spec(model, drive);
-  int place = 0;
+  int rank = 0;
   const auto next = [&] {
-    std::fprintf(out, "set origin %.3f,%.3f\nset size 0.5,0.31\n", left, 0.94 - 0.31 * ++place);
+    std::fprintf(out, "set origin %.3f,%.3f\nset size 0.5,0.31\n", left, 0.94 - 0.31 * ++rank);
   };
   std::fputs("set xlabel\n", out);
   next();

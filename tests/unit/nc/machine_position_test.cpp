@@ -11,13 +11,13 @@ namespace {
 
 constexpr double kNear_mm = 1e-6;
 
-TEST(NcMachinePlaces, MeanNothingBeforeTheFirstMotion) {
+TEST(NcMachinePositions, MeanNothingBeforeTheFirstMotion) {
   const ReadText read = read_nc("G91 G28 Z0.\nG90\nG0 X0. Y0. Z5.\n");
   EXPECT_EQ(read.error, "");
   EXPECT_EQ(read.motion().size(), 1U);
 }
 
-TEST(NcMachinePlaces, NeedTheMachineBehindIt) {
+TEST(NcMachinePositions, NeedTheMachineBehindIt) {
   const ReadText read = read_nc("G0 X0. Y0. Z5.\nG91 G28 Z0.\n");
   EXPECT_NE(read.error.find("G28 moves to a place of the machine, which is not known here; "
                             "--machine FILE"),
@@ -25,7 +25,7 @@ TEST(NcMachinePlaces, NeedTheMachineBehindIt) {
       << read.error;
 }
 
-TEST(NcMachinePlaces, LiftTheToolToTheHomeOfItsAxis) {
+TEST(NcMachinePositions, LiftTheToolToTheHomeOfItsAxis) {
   MachineModel model = shipped("trunnion-ac");
   const ReadText read = read_nc("G0 X1. Y2. Z5.\nG91 G28 Z0.\nG90 X3.\n", on(model));
   ASSERT_EQ(read.error, "");
@@ -42,7 +42,7 @@ TEST(NcMachinePlaces, LiftTheToolToTheHomeOfItsAxis) {
   EXPECT_NEAR(motion[2].tip_mm[2], height, kNear_mm);
 }
 
-TEST(NcMachinePlaces, OfG30AreTheMachineFilesPositions) {
+TEST(NcMachinePositions, OfG30AreTheMachineFilesPositions) {
   const MachineModel model = shipped("trunnion-ac");
   const auto words = post::AxisWords::of(model);
   ASSERT_TRUE(words);
@@ -65,7 +65,7 @@ TEST(NcMachinePlaces, OfG30AreTheMachineFilesPositions) {
   }
 }
 
-TEST(NcMachinePlaces, OfG53AreJointPositions) {
+TEST(NcMachinePositions, OfG53AreJointPositions) {
   const MachineModel model = shipped("trunnion-ac");
   const auto words = post::AxisWords::of(model);
   ASSERT_TRUE(words);
@@ -82,12 +82,12 @@ TEST(NcMachinePlaces, OfG53AreJointPositions) {
   EXPECT_NEAR(words->value(z, solved.q[z]), -10, 1e-3);
 }
 
-TEST(NcMachinePlaces, AreNotReachedByWayOfAPoint) {
+TEST(NcMachinePositions, AreNotReachedByWayOfAPoint) {
   const ReadText read = read_nc("G0 X1. Y2. Z5.\nG28 Z0.\n", on(shipped("trunnion-ac")));
   EXPECT_NE(read.error.find("by way of a point between; write G91 G28"), std::string::npos);
 }
 
-TEST(NcMachinePlaces, RapidsThatTurnWithoutToolCentreControlAreSaid) {
+TEST(NcMachinePositions, RapidsThatTurnWithoutToolCentreControlAreSaid) {
   const ReadText read =
       read_nc("G0 A0. C0.\nG43.4 H1\nG0 X1. Y2. Z5.\nG49\nG0 A30.\nG43.4 H1\nG0 X1. Y2. Z9.\n",
               on(shipped("trunnion-ac")));
