@@ -62,7 +62,7 @@ struct Counts {
 };
 
 /// Drives on the wire. It owns topics, types and quality of service, decides which service is
-/// obeyed, checks what is sent, bridges lost setpoints and ramps down behind the bridge, walks the
+/// obeyed, checks what is sent, bridges lost setpoints and ramps down after the bridge, walks the
 /// CiA 402 states, homes, and reports.
 ///
 /// After the constructor, work() makes no heap call, takes no lock, waits for nobody and writes no

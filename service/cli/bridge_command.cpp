@@ -26,14 +26,14 @@ struct BridgeOptions {
   bool is_description_alone = false;
 };
 
-/// The machine with its kinematics: of the file behind --machine, else of the one that the service
+/// The machine with its kinematics: of the file after --machine, else of the one that the service
 /// reports. Throws config::ConfigError.
 [[nodiscard]] MachineModel model_of(const BridgeOptions& options, const dds::MachineInfo& info) {
   if (!options.machine.machine.empty()) return load_machine(options.machine);
   if (!info.machine_file.empty()) return stream::served_model(info);
   throw config::ConfigError({.file = info.name,
                              .value = "its service does not report the machine file, which is long",
-                             .remedy = "name the file behind --machine"});
+                             .remedy = "name the file after --machine"});
 }
 
 [[nodiscard]] bridge::BridgeTime time_now() {

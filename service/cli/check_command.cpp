@@ -236,7 +236,7 @@ int run(Options& options) {
   find_set_up(options, model);
   if (!options.same.empty()) return compare(options, model);
   if (options.recording.empty()) {
-    std::cerr << "meridian check: name a recording, or two behind --same\n";
+    std::cerr << "meridian check: name a recording, or two after --same\n";
     return kUsage;
   }
   const std::string head = head_of(options.recording);
@@ -283,7 +283,7 @@ void add(CLI::App& app, int& exit_code) {
   command->add_flag("--unfinished", options->check.allow_unfinished,
                     "The run was ended before its path was");
   command->add_option("--from-cycle", options->check.from_cycle, "Leave out the cycles before");
-  command->add_option("--to-cycle", options->check.to_cycle, "Leave out the cycles behind");
+  command->add_option("--to-cycle", options->check.to_cycle, "Leave out later cycles");
   command->add_option("--picture", options->picture,
                       "Draw tip path, joints, speeds and rates to this .png or .svg");
   add_view_option(*command, options->html);

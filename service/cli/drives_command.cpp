@@ -52,7 +52,7 @@ drives::Injection read_injection(const std::string& text, const MachineModel& mo
   const auto injection = drives::parse_injection(text, model);
   if (!injection) throw CLI::ValidationError("--inject", injection.error());
   if (text.find('@') == std::string::npos) {
-    throw CLI::ValidationError("--inject", "'" + text + "': behind KIND stands @SECONDS");
+    throw CLI::ValidationError("--inject", "'" + text + "': after KIND stands @SECONDS");
   }
   return *injection;
 }

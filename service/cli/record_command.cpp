@@ -48,7 +48,7 @@ int run(Options& options) {
   const bool is_listening = options.flight.empty() && options.recording.empty();
   if (is_listening ? live.output.empty() && live.mcap.empty() : !live.output.empty()) {
     throw CLI::ValidationError(
-        "record", "name the recording to write, or one behind --mcap, --read or --convert");
+        "record", "name the recording to write, or one after --mcap, --read or --convert");
   }
   if (is_listening && live.mcap.empty() && !live.machine.machine.empty()) {
     throw CLI::ValidationError("--machine", "belongs to --mcap, --read or --convert");

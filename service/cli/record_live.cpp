@@ -151,7 +151,7 @@ class Files {
   std::unique_ptr<ros::WireFile> mcap_;
 };
 
-/// The machine with its kinematics, for an MCAP file: of the file behind --machine, else of the one
+/// The machine with its kinematics, for an MCAP file: of the file after --machine, else of the one
 /// that the service publishes. Throws config::ConfigError.
 [[nodiscard]] MachineModel whole_model(const LiveOptions& options, const dds::MachineInfo& info) {
   if (options.mcap.empty()) return {};
@@ -160,7 +160,7 @@ class Files {
   throw config::ConfigError(
       {.file = info.name,
        .value = "its service does not publish the machine file, which is long",
-       .remedy = "name the file behind --machine"});
+       .remedy = "name the file after --machine"});
 }
 
 int refuse(const record::RecordError& error) {

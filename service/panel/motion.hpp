@@ -28,7 +28,7 @@ class Motion {
     std::uint64_t cycle = 0;
     JointVector joints{};
     JointVector following{};   ///< setpoint less feedback, drive coordinates; 0 where not known
-    double feed_mm_per_s = 0;  ///< of the tip; 0 behind a lost cycle
+    double feed_mm_per_s = 0;  ///< of the tip; 0 after a lost cycle
   };
   /// `model` must live on. Every `trail_every` cycles a point of the trail.
   explicit Motion(const MachineModel& model, int trail_every = 8);

@@ -97,7 +97,7 @@ class StatusTimes {
 };
 
 /// Returns kStale where a verb that moves quotes an old epoch, another service or a status older
-/// than 500 ms by the service's own clock (or none), else kNone. Behind a block (`rest`, see
+/// than 500 ms by the service's own clock (or none), else kNone. After a block (`rest`, see
 /// rest_of()) start and resume are stale too where that status showed another rest: said twice
 /// they send on once.
 /// Proof: tests/unit/protocol/freshness_test.cpp.

@@ -45,7 +45,7 @@ std::vector<cl::ClWarning> SourcePump::take_warnings() {
 
 bool SourcePump::put(Supply supply) {
   std::unique_lock lock(mutex_);
-  has_room_.wait(lock, [this] { return is_stopping_ || supplies_.size() < kBlocksAhead; });
+  has_room_.wait(lock, [this] { return is_stopping_ || supplies_.size() < kMaxSupplies; });
   if (is_stopping_) return false;
   const bool was_empty = supplies_.empty();
   supplies_.push_back(std::move(supply));

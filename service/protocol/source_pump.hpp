@@ -25,7 +25,7 @@ namespace meridian::stream {
 /// Proof: tests/unit/protocol/source_pump_test.cpp.
 class SourcePump {
  public:
-  static constexpr std::size_t kBlocksAhead = 4096;
+  static constexpr std::size_t kMaxSupplies = 4096;
 
   /// `wake` is called on the reading thread whenever there is something to take and the one who
   /// takes may be asleep. The descriptor must stay open as long as the pump lives. Throws

@@ -91,7 +91,7 @@ bool is_printable(std::string_view text) noexcept {
 std::size_t whole_characters(std::string_view text, std::size_t max) noexcept {
   if (text.size() <= max) return text.size();
   std::size_t end = max;
-  // No character has more than three bytes behind its first.
+  // No character has more than three bytes after its first.
   for (int n = 0; n < 3 && end > 0 && is_continued(text[end]); ++n) --end;
   return is_continued(text[end]) ? max : end;
 }

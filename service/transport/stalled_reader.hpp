@@ -29,7 +29,7 @@ struct Unacknowledged {
 class StallWatch {
  public:
   /// Whether the reader that is `behind` now has been so, without a step on, for 2 s.
-  [[nodiscard]] bool look(const std::optional<Unacknowledged>& behind, std::int64_t now_ns);
+  [[nodiscard]] bool look(const std::optional<Unacknowledged>& unacknowledged, std::int64_t now_ns);
 
  private:
   std::optional<Unacknowledged> first_;  ///< as it was when it was seen there first

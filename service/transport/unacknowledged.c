@@ -49,7 +49,7 @@ int meridian_find_unacknowledged(int32_t writer, struct meridian_unacknowledged*
   struct thread_state* const thread = lookup_thread_state();
   const struct ddsi_domaingv* const domain = ddsrt_atomic_ldvoidp(&thread->gv);
   if (domain == NULL) return 0;
-  int is_behind = 0;
+  int is_unacknowledged = 0;
   const ddsi_guid_t own = inside(guid);
   thread_state_awake(thread, domain);
   struct ddsi_writer* const found = entidx_lookup_writer_guid(domain->entity_index, &own);
@@ -57,8 +57,8 @@ int meridian_find_unacknowledged(int32_t writer, struct meridian_unacknowledged*
     ddsrt_mutex_lock(&found->e.lock);
     const struct ddsi_wr_prd_match* const root =
         (const struct ddsi_wr_prd_match*)found->readers.root;
-    is_behind = root != NULL && root->min_seq < found->seq;
-    if (is_behind) {
+    is_unacknowledged = root != NULL && root->min_seq < found->seq;
+    if (is_unacknowledged) {
       out->up_to = root->min_seq;
       out->sent = found->seq;
       participant_of(root->arbitrary_unacked_reader, out->participant);
@@ -66,5 +66,5 @@ int meridian_find_unacknowledged(int32_t writer, struct meridian_unacknowledged*
     ddsrt_mutex_unlock(&found->e.lock);
   }
   thread_state_asleep(thread);
-  return is_behind;
+  return is_unacknowledged;
 }

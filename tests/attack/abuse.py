@@ -99,7 +99,7 @@ def run(arguments, settings):
         recording = Recording(plant.recording) if plant.recording.exists() else None
         late = []
         for one in situations.samples:
-            found = recording and recording.stop_behind(one["written_ns"], LIMIT_MS * 1_000_000,
+            found = recording and recording.stop_after(one["written_ns"], LIMIT_MS * 1_000_000,
                                                         STOPPED[one["verb"]])
             late.append(found[0] if found else None)
         lost = sum(one is None for one in late)

@@ -36,7 +36,7 @@ SETTINGS = f'tools = "{pathlib.Path(__file__).resolve().parents[2]}/deploy/tools
 def check_stops(samples, recording):
     """Adds what the recording says to each sample."""
     for one in samples:
-        found = recording.stop_behind(one["written_ns"], LIMIT_MS * 1_000_000,
+        found = recording.stop_after(one["written_ns"], LIMIT_MS * 1_000_000,
                                       STOPPED[one["verb"]]) if recording else None
         one["is_obeyed"] = found is not None if recording else one["state_ns"] > 0
         if found:

@@ -42,7 +42,7 @@ class Recording:
                 self.flags.append(int(row[at["flags"]]))
                 self.speed.append(math.sqrt(sum(float(row[i]) ** 2 for i in speeds)))
 
-    def first_behind(self, ns):
+    def first_after(self, ns):
         low, high = 0, len(self.due_ns)
         while low < high:
             middle = (low + high) // 2
@@ -52,11 +52,11 @@ class Recording:
                 high = middle
         return low
 
-    def stop_behind(self, written_ns, limit_ns, states):
+    def stop_after(self, written_ns, limit_ns, states):
         """Of a stop that was written then: (ms until a row of `states`, ms until the first slower
         setpoint, executed cycles between both). None where the machine goes on for longer than the
         limit, () where it is at rest then for another reason."""
-        i = self.first_behind(written_ns)
+        i = self.first_after(written_ns)
         if i == len(self.due_ns):
             return None
         before = self.state[max(0, i - 1)]

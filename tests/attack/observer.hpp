@@ -42,7 +42,7 @@ class Observer {
     std::array<double, 6> moved_ready{}, moved_off{}, moved_fault{};  ///< mm or rad, largest
     /// Reports of an enabled drive more than `kSwitchOff_ns` behind a status of Off or Fault.
     std::uint64_t enabled_at_rest = 0;
-    /// How long behind the first setpoint without "follow me" the first controlword without
+    /// How long after the first setpoint without "follow me" the first controlword without
     /// "operation enabled" was written, by the service's own time stamps, ms; negative: before it.
     std::vector<double> off_ms{};
   };

@@ -25,7 +25,7 @@ import tip_coverage
 from plant import Plant, wait_until
 
 FRAME = "20,-30,50"
-MAX_DEPTH = 5  # recoveries that are broken off one behind the other
+MAX_DEPTH = 5  # recoveries that are broken off one after the other
 # Heads of real five-axis parts: strokes of 100 mm at 1000 mm/min.
 CORPUS = (("ramsai_1-1_plan_3x.apt", 22), ("ramsai_1-2_plan_5x_depincage_lateral.apt", 36),
           ("ramsai_1-3_plan_5x_depincage_double.apt", 44))
@@ -177,7 +177,7 @@ class Campaign:
     def disturb(self, plant, kind, story, from_line):
         self.kills += 1
         self.counts[kind] = self.counts.get(kind, 0) + 1
-        story.append(f"{kind} behind --from-line {from_line} in {plant.operator.state}")
+        story.append(f"{kind} after --from-line {from_line} in {plant.operator.state}")
         who, how = kind.split(" ", 1)
         process = {"service": plant.service, "station": plant.station, "drives": plant.drives}[who]
         if process.poll() is not None:

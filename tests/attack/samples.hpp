@@ -54,7 +54,7 @@ class Ears {
   Heard heard_{};
 };
 
-/// Makes samples of a topic, one behind the other.
+/// Makes samples of a topic, one after the other.
 class Maker {
  public:
   /// `asked`: the verb of commands; 255: another one each time, those that stop left out.

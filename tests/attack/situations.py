@@ -83,7 +83,7 @@ class Situations:
         part, n = self.plant.folder / "long.cls", 0
         while time.monotonic() < until and self.to_cut(part):
             time.sleep(self.draw.uniform(0.05, 0.15))
-            # A resume takes a second to full feed: every fourth stop comes behind it, where the
+            # A resume takes a second to full feed: every fourth stop comes after it, where the
             # wire alone shows when the machine slows down.
             self.stop("cutting", "hold", cruise=n % 4 == 0)
             n += 1

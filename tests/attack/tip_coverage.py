@@ -85,7 +85,7 @@ def read_watch(file, tool_mm, frame):
 
 def covered(piece, segment, before, after):
     """Intervals of a line, in mm from its begin, that a piece passed along, and when it last did.
-    Rows of the lines before and behind count too: corners are rounded."""
+    Rows of the lines before and after count too: corners are rounded."""
     line, begin, end, _ = segment
     length = math.dist(begin, end)
     direction = [(b - a) / length for a, b in zip(begin, end)]
@@ -161,7 +161,7 @@ def check(part, watch, frame, tool_mm=110.0, ends=None):
         for line in sorted(moved):
             segment = lines[bisect.bisect_left(numbers, line)]
             if line >= rested or line not in earlier or segment[3]:
-                continue  # the approach to the line behind a plunge goes down the same line
+                continue  # the approach to the line after a plunge goes down the same line
             j, ns = max(earlier[line], key=lambda one: one[1] or 0)
             kind = ends[j] if ends and j < len(ends) else ""
             late_ns = max(pieces[j].due_ns) - (ns or 0)

@@ -65,7 +65,7 @@ std::vector<std::int64_t> count_calls(const std::string& workload, int count) {
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with(kWord)) parts.push_back(std::atoll(line.c_str() + kWord.size()));
   }
-  // Before the first call, and behind the last, is what does not count.
+  // Before the first call, and after the last, is what does not count.
   if (parts.size() != static_cast<std::size_t>(count) + 2) return {};
   return {parts.begin() + 1, parts.end() - 1};
 }

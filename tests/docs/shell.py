@@ -31,7 +31,7 @@ def eventually(is_so, patience_s):
 
 
 class Shell:
-    """Runs scripts one behind the other in one bash. What they start in the background ends with it."""
+    """Runs scripts one after the other in one bash. What they start in the background ends with it."""
 
     def __init__(self, folder):
         self.folder, self.count, self.beside = folder, 0, []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Walks a page as its reader would: its commands in one shell, one behind the other.
+"""Walks a page as its reader would: its commands in one shell, one after the other.
 
     walk_page.py SOURCE BINARIES PAGE [--beside-others]
 
@@ -61,7 +61,7 @@ def prepare(folder, source, binaries, is_beside_others):
 
 
 def is_part_of(body, file):
-    """Whether the lines of `body` stand in `file` one behind the other, however they are indented."""
+    """Whether the lines of `body` stand in `file` one after the other, however they are indented."""
     def plain(text):
         return "\n".join(line.strip() for line in text.splitlines())
     return file.is_file() and f"\n{plain(body)}\n" in f"\n{plain(file.read_text())}\n"

@@ -25,11 +25,11 @@ def is_passive(words):
     bare = [plain(word) for word in words]
     for i, word in enumerate(bare):
         if word in BE:
-            behind = i + 1
-            while behind < min(i + 3, len(bare)) and BETWEEN.fullmatch(bare[behind]):
-                behind += 1
-            if behind < len(bare) and bare[behind] not in NO_PARTICIPLE and (
-                    bare[behind] in IRREGULAR or PARTICIPLE.fullmatch(bare[behind])):
+            after = i + 1
+            while after < min(i + 3, len(bare)) and BETWEEN.fullmatch(bare[after]):
+                after += 1
+            if after < len(bare) and bare[after] not in NO_PARTICIPLE and (
+                    bare[after] in IRREGULAR or PARTICIPLE.fullmatch(bare[after])):
                 return True
     return False
 

@@ -46,7 +46,7 @@ void read_all(cl::ClReader& reader) {
       continue;
     }
     if (!*block) break;
-    require(!has_ended, "a block behind the end");
+    require(!has_ended, "a block after the end");
     require((*block)->sequence == sequence++, "a block is missing");
     has_ended = (*block)->kind == BlockKind::kEnd;
     if (is_motion((*block)->kind)) check_motion(**block);

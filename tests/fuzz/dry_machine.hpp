@@ -19,7 +19,7 @@ class DryMachine {
  public:
   explicit DryMachine(const MachineModel& model) : model_(model), reader_(port()) {}
 
-  /// False where a stop that was said behind it has made it void.
+  /// False where a stop that was said after it has made it void.
   bool say(const Command& command) {
     const auto& [request, verb, argument] = command;
     in_.has_command = true;
@@ -34,7 +34,7 @@ class DryMachine {
       is_void = is_void || (event.code == EventCode::kRefused &&
                             static_cast<Refusal>(event.x) == Refusal::kOvertaken);
       if (event.code != EventCode::kAccepted) continue;
-      require(!leads_to_motion(verb) || request > stopped_, "done although a stop came behind it");
+      require(!leads_to_motion(verb) || request > stopped_, "done although a stop came after it");
       const bool is_for_dry_run = may_be_dry(verb) && argument != 0;
       require(!is_for_dry_run || was_dry, "accepted for a dry run alone, outside of one");
       require(!may_be_dry(verb) || argument == 0 || argument == 1, "an argument that is none");

@@ -27,7 +27,7 @@ void read_machine(Bytes bytes);
 /// Those that are shipped, from `folder`.
 [[nodiscard]] Seeds machine_seeds(const std::string& folder);
 
-/// Samples off the wire, one behind the other, each for whoever acts on its type: intake, station,
+/// Samples off the wire, one after the other, each for whoever acts on its type: intake, station,
 /// supervisor, drives, feedback, viewer.
 void check_wire(Bytes bytes);
 [[nodiscard]] Seeds wire_seeds();

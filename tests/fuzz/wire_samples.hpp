@@ -32,7 +32,7 @@ enum SampleType : std::uint8_t {
 enum WireChoice : std::uint8_t {
   kInverseTime,
   kArc,
-  kRest,  ///< a start or resume that was let through, behind a block
+  kRest,  ///< a start or resume that was let through, after a block
   kForDryRunAlone,
   kReplyOfDryRun,
   kReplyWithApproach,
@@ -43,7 +43,7 @@ enum WireChoice : std::uint8_t {
   kStatusWithApproach,
   kStatusWithSummary,
   kHandOnAJoint,     ///< a sample that a hand's machine takes
-  kOvertakenByStop,  ///< a word that waited, with a stop behind it
+  kOvertakenByStop,  ///< a word that waited, with a stop after it
   kLeaseLeft,        ///< to another service that serves the machine
   kWireChoices
 };

@@ -4,11 +4,11 @@
 One line of SAMPLES is one period of HAL's servo thread: its length in ns, mark before and after the deed, power, and the velocities
 commanded to three linear (mm/s) and two rotary joints (deg/s). STALLED_MS: the latest wake-up that stall_watch.py saw meanwhile.
 Prints for how long a joint moved after the deed began and the largest acceleration over 5 ms (a busy host makes periods of
-microseconds behind a late one).
+microseconds after a late one).
 
 Exit code 1: a joint moved for longer than MAX_MS (plus the time that the deed itself took; 0: any time) or harder than these limits
 (mm/s2, deg/s2). 2: the run is void: samples are lost, the host stalled, the move was at its end, or a promise was broken on a host that is
-crowded, where a thread may wait for its processor while others do not, or behind a stall that HAL catches up with: at nine eighths of the pace.
+crowded, where a thread may wait for its processor while others do not, or after a stall that HAL catches up with: at nine eighths of the pace.
 """
 import collections
 import os

@@ -197,7 +197,7 @@ TEST_F(BadInput, AGapIsAskedForAgainFromTheLastGoodBlock) {
   EXPECT_EQ(answer->text, "blocks 3 to 5 are missing: send again");
   ASSERT_NO_FATAL_FAILURE(run_out());
   const Motion motion = motion_of_run();
-  EXPECT_EQ(motion.last_sequence_moving, 2u) << "something behind the gap was run";
+  EXPECT_EQ(motion.last_sequence_moving, 2u) << "something after the gap was run";
   expect_at(motion.rest_pose, blocks[2]);
 }
 

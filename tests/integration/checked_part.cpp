@@ -130,7 +130,7 @@ LinesCut check(const PartAsked& part, const PartCut& cut) {
     if ((row.flags & kSetpointMoving) == 0 || row.kind == MotionKind::kApproach) continue;
     if (!std::binary_search(part.motions.begin(), part.motions.end(), row.line)) continue;
     if (row.line < lines.last) {
-      ADD_FAILURE() << "line " << row.line << " behind line " << lines.last << " in cycle "
+      ADD_FAILURE() << "line " << row.line << " after line " << lines.last << " in cycle "
                     << row.cycle;
       break;
     }
@@ -145,7 +145,7 @@ LinesCut check(const PartAsked& part, const PartCut& cut) {
   return lines;
 }
 
-void expect_seam(const PartAsked& part, const LinesCut& before, const LinesCut& behind,
+void expect_seam(const PartAsked& part, const LinesCut& before, const LinesCut& after,
                  std::uint32_t from_line, bool is_late) {
   const auto first = std::lower_bound(part.motions.begin(), part.motions.end(), from_line);
   ASSERT_NE(first, part.motions.end());
@@ -160,8 +160,8 @@ void expect_seam(const PartAsked& part, const LinesCut& before, const LinesCut& 
   if (!is_late) {
     EXPECT_LE(before.last, *first) << "cut twice";
   }
-  if (behind.last != 0) {
-    EXPECT_GE(behind.first, *first) << "cut twice";
+  if (after.last != 0) {
+    EXPECT_GE(after.first, *first) << "cut twice";
   }
 }
 

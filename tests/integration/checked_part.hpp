@@ -67,7 +67,7 @@ struct LinesCut {
 /// Two stretches, of which the second began at `from_line`, together cut every line: none is lost
 /// between them, and none but that line is in both. `is_late`: of a journal that is a while old
 /// more may be.
-void expect_seam(const PartAsked& part, const LinesCut& before, const LinesCut& behind,
+void expect_seam(const PartAsked& part, const LinesCut& before, const LinesCut& after,
                  std::uint32_t from_line, bool is_late = false);
 
 }  // namespace meridian::test

@@ -59,10 +59,10 @@ TEST_F(CheckedPart, SeesNothingWrongWhereEveryLineIsCut) {
   const LinesCut before = check(asked(), cut_into(middle));
   EXPECT_EQ(before.last, middle);
   EXPECT_FALSE(before.is_last_done);
-  const LinesCut behind = check(asked(), cut_from(middle));
-  EXPECT_EQ(behind.last, lines.motions.back());
-  EXPECT_TRUE(behind.is_last_done);
-  expect_seam(asked(), before, behind, middle);
+  const LinesCut after = check(asked(), cut_from(middle));
+  EXPECT_EQ(after.last, lines.motions.back());
+  EXPECT_TRUE(after.is_last_done);
+  expect_seam(asked(), before, after, middle);
 }
 
 TEST_F(CheckedPart, SeesALineThatIsLostAndOneThatIsCutTwice) {

@@ -30,7 +30,7 @@ constexpr std::uint64_t kSeenPerUnseen = 100;
 constexpr std::uint64_t kBridge_cycles = 50;
 
 /// The line behind `words` in `text`; 0: it is not there.
-[[nodiscard]] std::uint32_t line_behind(const std::string& text, const std::string& words) {
+[[nodiscard]] std::uint32_t line_after(const std::string& text, const std::string& words) {
   const auto at = text.find(words);
   return at == std::string::npos
              ? 0
@@ -236,7 +236,7 @@ std::uint32_t FaultCase::reported_by_journal() {
   if (at != std::string::npos) report = said.substr(at, said.find('\n', at) - at);
   // A program that began just now may not have got to the disk: none of it is cut.
   if (report.empty() && (!has_program_ || phase_.where == Where::kBegin)) return 0;
-  const std::uint32_t line = line_behind(report, "; go on with --from-line ");
+  const std::uint32_t line = line_after(report, "; go on with --from-line ");
   EXPECT_GT(line, 0U) << report;
   EXPECT_GE(line, line_long_ago_) << "older than a second: " << report;
   const bool is_done = report.find(" done up to block ") != std::string::npos;
@@ -309,10 +309,10 @@ void FaultCase::check_all() {
       phase_.where == Where::kTool && passes_with(part, *second_, next->length_mm)) {
     second_->tool_mm = next->length_mm;
   }
-  const LinesCut behind = check(part, *second_);
-  EXPECT_EQ(behind.last, part_.motions.back());
-  EXPECT_TRUE(behind.is_last_done);
-  if (second_->from_line > 0) expect_seam(part, before, behind, second_->from_line, letter_ == "X");
+  const LinesCut after = check(part, *second_);
+  EXPECT_EQ(after.last, part_.motions.back());
+  EXPECT_TRUE(after.is_last_done);
+  if (second_->from_line > 0) expect_seam(part, before, after, second_->from_line, letter_ == "X");
 }
 
 }  // namespace meridian::test

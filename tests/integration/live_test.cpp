@@ -214,7 +214,7 @@ TEST(Live, IsReplayedBitForBitFromTheOperatorEventsBesideItsRecording) {
   expect_checked(plant, part, live);  // the feed times the override in force
 }
 
-/// Sends on from behind a block; what follows may not have been planned yet.
+/// Sends on from after a block; what follows may not have been planned yet.
 void send_on(Plant& plant, Verb verb) { plant.must(verb, 0, Refusal::kNoProgram); }
 
 /// An operator who steps through five blocks, lets the program run up to the first optional stop,
@@ -224,11 +224,11 @@ void step_through(Plant& plant) {
   ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kOptionalStop, 1));
   ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kStart));
   std::uint64_t block = UINT64_MAX;  // in front of the first
-  const auto rests_behind_another = [&block](const dds::Status& status) {
+  const auto rests_after_another = [&block](const dds::Status& status) {
     return status.state == State::kStepping && status.block != block;
   };
   for (int n = 0; n < 5; ++n) {
-    ASSERT_TRUE(plant.runs_until(rests_behind_another)) << plant.standing();
+    ASSERT_TRUE(plant.runs_until(rests_after_another)) << plant.standing();
     EXPECT_TRUE(plant.status().is_single_block && plant.status().stops_at_optional);
     EXPECT_EQ(plant.status().block, block + 1);
     block = plant.status().block;
@@ -249,7 +249,7 @@ void step_through(Plant& plant) {
       << plant.standing();
   ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kSingleBlock, 1));
   for (int n = 0; n < 2; ++n) {
-    ASSERT_TRUE(plant.runs_until(rests_behind_another)) << plant.standing();
+    ASSERT_TRUE(plant.runs_until(rests_after_another)) << plant.standing();
     block = plant.status().block;
     if (n == 1) {
       ASSERT_NO_FATAL_FAILURE(plant.must(Verb::kSingleBlock, 0));

@@ -195,7 +195,7 @@ void Plant::must(Verb verb, double argument, Refusal passing) {
   std::optional<dds::Reply> reply;
   (void)eventually([&] {
     reply = say(verb, argument);
-    // Said again: behind a stop as soon as a status of after it was seen.
+    // Said again: after a stop as soon as a status of after it was seen.
     const bool is_late =
         reply && (reply->refusal == Refusal::kStale || reply->refusal == Refusal::kOvertaken);
     return !reply || (!is_late && reply->refusal != passing);

@@ -54,7 +54,7 @@ class SetUpProbe : public testing::Test {
     return tool(plant, words);
   }
   /// The number behind `words` in what was said.
-  [[nodiscard]] static double number_behind(const std::string& words, const std::string& said) {
+  [[nodiscard]] static double number_after(const std::string& words, const std::string& said) {
     const std::size_t at = said.find(words);
     EXPECT_NE(at, std::string::npos) << said;
     return at == std::string::npos ? -1 : std::stod(said.substr(at + words.size()));
@@ -77,13 +77,13 @@ TEST_F(SetUpProbe, ReportsItsContactNotesTheTouchAndGoesBack) {
   ASSERT_EQ(found.wait(milliseconds(30'000)), 0) << found.said();
   const std::string said = found.said();
   std::fputs(said.c_str(), stdout);
-  const double at = number_behind("contact at ", said);
-  const double uncertainty = number_behind("uncertainty ", said);
+  const double at = number_after("contact at ", said);
+  const double uncertainty = number_after("uncertainty ", said);
   EXPECT_GT(uncertainty, 0);
   EXPECT_LT(uncertainty, 0.1);
   EXPECT_NEAR(at, tip_x + kAhead_mm, uncertainty + 1e-4) << said;
-  EXPECT_GT(number_behind("stop distance ", said), 0);
-  EXPECT_GT(number_behind("overtravel ", said), 0);
+  EXPECT_GT(number_after("stop distance ", said), 0);
+  EXPECT_GT(number_after("overtravel ", said), 0);
   ASSERT_NO_FATAL_FAILURE(expect_ready());
   EXPECT_NEAR(tip().x(), at - 2, 1e-3);
   EXPECT_EQ(plant.status().contacts, 1U);

@@ -101,10 +101,10 @@ class StationDeath : public testing::TestWithParam<const char*> {
     const MachineModel model = config::load_machine(plant.machine());
     const ToolTable none;
     const PartAsked part{model, none, file(), motion_lines(model, none, file())};
-    const LinesCut before = check(part, first), behind = check(part, second);
-    EXPECT_EQ(behind.last, part.motions.back());
-    EXPECT_TRUE(behind.is_last_done);
-    expect_seam(part, before, behind, line);
+    const LinesCut before = check(part, first), after = check(part, second);
+    EXPECT_EQ(after.last, part.motions.back());
+    EXPECT_TRUE(after.is_last_done);
+    expect_seam(part, before, after, line);
   }
 
   const std::vector<std::string> lines = part_with_arcs();

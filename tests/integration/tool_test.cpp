@@ -275,7 +275,7 @@ std::vector<BadFile> bad_files() {
           {"empty.apt", "", "the file is empty"},
           {"feedless.apt", "UNITS/MM\nGOTO/0,0,150,0,0,1\nFINI\n", "no FEDRAT before it"},
           {"axisless.apt", "UNITS/MM\nFEDRAT/6000\nGOTO/0,0,150,0,0.6,0.8\nGOTO/20,0,150\nFINI\n",
-           "a point without a tool axis behind a tilted one"},
+           "a point without a tool axis after a tilted one"},
           {"undecided.nc", "N10 G21 G90\nN20 G1 X1. Y2. Z3. F500\nM30\n", "this is an NC program"},
           {"macro.nc", "%\nO1000\nN10 #1=5\nN20 G1 X#1 Y2. Z3. F500\nM30\n%\n", "a variable (#)"}};
 }

@@ -14,7 +14,7 @@ const plant = new Plant(bin, source, "lai.toml");
 const kMinutes = Number(process.env.MERIDIAN_PANEL_MINUTES ?? 0.5);
 const kClients = 10, kMaxMemory_kib = 64 * 1024, kMaxShare = 0.25, kPong = 10;
 
-// A page that reads all it gets; a frozen one reads nothing behind the handshake.
+// A page that reads all it gets; a frozen one reads nothing after the handshake.
 function page(isFrozen) {
   const { host, hostname, port } = new URL(plant.url);
   const socket = connect(Number(port), hostname, () => socket.write(upgrade(host)));

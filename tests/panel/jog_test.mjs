@@ -115,7 +115,7 @@ async function aFingerPressesAgainAtOnce({ page }) {
   await afterStalls(page, async () => {
     const { hand, at } = await press(page, true);
     for (let attempt = 0, isHeld = false; !isHeld; ++attempt) {
-      must(attempt < 8, "every press behind the first is let go at once");
+      must(attempt < 8, "every press after the first is let go at once");
       await hand.up();
       await sleep(50);
       await hand.down(at);

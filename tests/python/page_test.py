@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the blocks of docs/python.md, one behind the other, as a reader would."""
+"""Runs the blocks of docs/python.md, one after the other, as a reader would."""
 import importlib.util
 import os
 import re

@@ -7,7 +7,7 @@
 
 namespace meridian::test {
 
-/// An alarm behind a FaultStop as in the tables of docs/faults.md; one that has no letter there by
+/// An alarm after a FaultStop as in the tables of docs/faults.md; one that has no letter there by
 /// its number.
 [[nodiscard]] inline std::string letter_of(Alarm alarm) {
   switch (alarm) {

@@ -64,7 +64,7 @@ struct ClPath {
   return std::min(min, off((low + high) / 2));
 }
 
-/// The ways of the motion blocks behind the first, which only says where the path begins.
+/// The ways of the motion blocks after the first, which only says where the path begins.
 [[nodiscard]] inline std::vector<ClPath> paths_of(const std::vector<ClBlock>& blocks) {
   std::vector<ClPath> paths;
   ToolPose last{Vector3::Zero(), Vector3::UnitZ()};

@@ -58,8 +58,8 @@ class MadePlan {
         phase.duration = whole - middle;
         phase.s = length / 2;
       }
-      const bool is_behind = phase.s >= length / 2;
-      stage_phase(phase, is_behind ? second : first, is_behind ? length / 2 : 0, limits);
+      const bool is_second = phase.s >= length / 2;
+      stage_phase(phase, is_second ? second : first, is_second ? length / 2 : 0, limits);
     }
     end_window();
   }

@@ -16,7 +16,7 @@
 /// no summary. Of its own: it shares the checksum with the writer and nothing else.
 namespace meridian::test {
 
-/// Numbers and texts one behind the other.
+/// Numbers and texts one after the other.
 class Parts {
  public:
   explicit Parts(std::string_view bytes) : bytes_(bytes) {}
@@ -61,7 +61,7 @@ struct McapContent {
   std::vector<std::size_t> chunks;             ///< messages in each of them
   std::map<std::string, std::string> schemas;  ///< text by name
   std::map<std::string, std::string> metadata;
-  bool has_end = false;  ///< the magic behind the footer
+  bool has_end = false;  ///< the magic after the footer
   bool is_sound = true;  ///< the sums of all chunks
 };
 

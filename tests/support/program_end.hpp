@@ -28,7 +28,7 @@ namespace meridian::test {
   return block;
 }
 
-/// Puts the block behind the last that ends a program.
+/// Puts the block after the last that ends a program.
 inline void end_program(std::vector<ClBlock>& blocks) {
   ClBlock end;
   end.kind = BlockKind::kEnd;

@@ -189,7 +189,7 @@ enum class Refusal : std::uint8_t {
   kDryRun,          ///< in a dry run nothing is homed
   kDriveContested,  ///< two sources report the same drive
   kNotDryRun,       ///< said for a dry run alone, and the machine is in none
-  kOvertaken,       ///< a stop was said behind it and came first
+  kOvertaken,       ///< a stop was said after it and came first
   kNoEnablingDevice,  ///< an enabling device is required, and none is pressed
   kDrivesTaken,       ///< the drives obey another service
   kDrivesAstray,      ///< drives are on or move although the machine has them off

@@ -157,7 +157,7 @@ struct Homing {
   [[nodiscard]] bool is_active() const noexcept { return phase != Phase::kNone; }
 };
 
-/// The program rests behind every block, until the operator sends it on.
+/// The program rests after every block, until the operator sends it on.
 struct SingleBlock {
   enum class Phase : std::uint8_t {
     kRunning,
@@ -173,7 +173,7 @@ struct SingleBlock {
   std::uint64_t next_block = 0;  ///< ends of blocks before it are behind the machine
 
   [[nodiscard]] bool is_braking() const noexcept { return phase == Phase::kBraking; }
-  [[nodiscard]] bool is_behind() const noexcept { return phase == Phase::kResting; }
+  [[nodiscard]] bool is_resting() const noexcept { return phase == Phase::kResting; }
   /// Something else than the end of a block brakes the machine from here on.
   void leave_brake() noexcept {
     if (is_braking()) phase = Phase::kRunning;
@@ -194,7 +194,7 @@ struct DriveWatch {
 enum class ProbeState : std::uint8_t {
   kOff,      ///< none
   kSeeking,  ///< it moves until the probe reports contact, or is held
-  kFound     ///< it comes to rest behind its contact
+  kFound     ///< it comes to rest after its contact
 };
 
 /// The probe, as the cycle follows it (cycle/probing.hpp).

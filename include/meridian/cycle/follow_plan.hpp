@@ -145,7 +145,7 @@ inline void wait_at_barrier(Cycle& c) noexcept {
     const TimePiece& piece = *c.reader.piece();
     const PathState end = state_at(piece, piece.duration);
     if (!settle_at_end(c, end)) return false;
-    if (single.is_on && rests_behind_motion(c, end)) return true;
+    if (single.is_on && rests_after_motion(c, end)) return true;
     if (!next_piece(c) || !is_on_move(c)) continue;
     c.state.piece_time = is_plan_at_rest(c) ? take_up_override(c, beyond) : beyond;
   }

@@ -229,8 +229,8 @@ class ToolSurvey {
                                 to = tip_at(machine, tool_length_mm, b);
     for (std::size_t i = 0; i < from.size(); ++i) {
       const double before = beyond_face(machine.tip_box, i, value_of(from[i]));
-      const double behind = beyond_face(machine.tip_box, i, value_of(to[i]));
-      if (before > kTipBoxRounding && before - std::max(0.0, behind) > kTipBoxRounding) return true;
+      const double after = beyond_face(machine.tip_box, i, value_of(to[i]));
+      if (before > kTipBoxRounding && before - std::max(0.0, after) > kTipBoxRounding) return true;
     }
     return false;
   }

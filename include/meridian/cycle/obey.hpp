@@ -131,10 +131,10 @@ inline void set_dry_run(Cycle& c, bool is_on) noexcept {
       return condition_of_dry_run(c, command.argument);
     case Verb::kStart:
       if ((f.referenced_mask & all) != all) return Refusal::kNotReferenced;
-      return !c.state.single_block.is_behind() || leave_block(c) ? Refusal::kNone
-                                                                 : Refusal::kNoProgram;
+      return !c.state.single_block.is_resting() || leave_block(c) ? Refusal::kNone
+                                                                  : Refusal::kNoProgram;
     case Verb::kResume:
-      if (c.state.single_block.is_behind()) {
+      if (c.state.single_block.is_resting()) {
         return leave_block(c) ? Refusal::kNone : Refusal::kNoProgram;
       }
       return c.reader.piece() != nullptr || next_piece(c) ? Refusal::kNone : Refusal::kNoProgram;

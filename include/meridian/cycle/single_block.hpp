@@ -164,7 +164,7 @@ inline void begin_braking(Cycle& c, const BlockEndAhead& end) noexcept {
 }
 
 /// At rest at the end of block `sequence`: until the operator sends it on.
-inline void rest_behind_block(Cycle& c, std::uint64_t sequence, std::uint32_t line) noexcept {
+inline void rest_after_block(Cycle& c, std::uint64_t sequence, std::uint32_t line) noexcept {
   c.state.single_block.phase = SingleBlock::Phase::kResting;
   c.state.single_block.next_block = sequence + 1;
   c.state.rate.reset(0);
@@ -175,7 +175,7 @@ inline void rest_behind_block(Cycle& c, std::uint64_t sequence, std::uint32_t li
 }
 
 /// Where the plan rests at the end of the motion in force: rests there too if a block ends there.
-[[nodiscard]] inline bool rests_behind_motion(Cycle& c, const PathState& end) noexcept {
+[[nodiscard]] inline bool rests_after_motion(Cycle& c, const PathState& end) noexcept {
   const PathPiece& path = *c.reader.path();
   if (end.ds > kRest_mm_per_s) return false;
   for (std::uint32_t i = 0; i < path.marks.count; ++i) {
@@ -184,7 +184,7 @@ inline void rest_behind_block(Cycle& c, std::uint64_t sequence, std::uint32_t li
     const bool is_here = std::abs(mark.s - end.s) <= kSameEnd_mm;
     if (!is_here || sequence < c.state.single_block.next_block) continue;
     c.state.piece_time = c.reader.piece()->duration;
-    rest_behind_block(c, sequence, mark.line);
+    rest_after_block(c, sequence, mark.line);
     return true;
   }
   return false;
@@ -193,7 +193,7 @@ inline void rest_behind_block(Cycle& c, std::uint64_t sequence, std::uint32_t li
 /// Leaves the rest that a dwell or an action was, where the operator does not want to be asked.
 inline void leave_barrier(Cycle& c) noexcept {
   const TimePiece& piece = *c.reader.piece();
-  if (c.state.single_block.is_on) return rest_behind_block(c, piece.sequence, piece.line);
+  if (c.state.single_block.is_on) return rest_after_block(c, piece.sequence, piece.line);
   next_piece(c);
 }
 
@@ -213,7 +213,7 @@ inline void follow_braking_rate(Cycle& c) noexcept {
   }
   if (single.pieces > 0) return;
   c.state.piece_time = is_over ? single.time : std::min(c.state.piece_time, single.time);
-  if (is_over && single.is_on) return rest_behind_block(c, single.sequence, single.line);
+  if (is_over && single.is_on) return rest_after_block(c, single.sequence, single.line);
   if (is_over) single.leave_brake();
 }
 
@@ -233,7 +233,7 @@ inline void begin_next_block(Cycle& c) noexcept {
   }
 }
 
-/// Whether something is there to go on with behind the block that the machine rests behind.
+/// Whether something is there to go on with after the block that the machine rests behind.
 [[nodiscard]] inline bool leave_block(Cycle& c) noexcept {
   const TimePiece* piece = c.reader.piece();
   const bool is_inside = is_on_move(c) && c.state.piece_time < piece->duration;

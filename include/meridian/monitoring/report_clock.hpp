@@ -24,7 +24,7 @@ inline constexpr int kSlackPeriods = 4;
 }
 
 /// Which axes have a new report, and how far apart in time it is from the one before. The first
-/// report behind a silence may be as old as that silence was long, and the next one on time: for
+/// report after a silence may be as old as that silence was long, and the next one on time: for
 /// kGap_s the longest silence, lost periods included, is added. RT: cycle. Proof:
 /// tests/unit/monitoring/report_clock_test.cpp.
 class ReportClock {

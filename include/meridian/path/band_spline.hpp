@@ -59,7 +59,7 @@ struct BandStatistics {
 ///
 /// Every span is verified in closed form before it is handed out, between the block ends too. What
 /// comes out depends on the blocks alone, bit for bit, not on when they came or when next() was
-/// called. The committed spline ends at most 172 mm of u behind the last block, until
+/// called. The committed spline ends at most 172 mm of u after the last block, until
 /// finish() clamps its end to the last block's pose: a program that goes on smoothly calls it at
 /// rests alone. Memory is bounded and allocated at construction; blocks may be as short as they
 /// like. Arcs are followed by chords that use 2 % of the tip tolerance.

@@ -97,7 +97,7 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
   if (piece != nullptr) window_ = piece->window;
   if (sets_off || !is_moving) {
     decide(Cause::kRest);
-    behind_ = Cause::kRest;
+    speeds_up_from_ = Cause::kRest;
     is_braking_ = false;
   }
   if (is_moving) {
@@ -115,7 +115,7 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
     cause = cause_of(view, record);
     if (path->motion == MotionKind::kUnwind) {
       decide(Cause::kRest);
-      behind_ = Cause::kRest;
+      speeds_up_from_ = Cause::kRest;
       is_braking_ = false;
       cause = Cause::kUnwinding;
     }
@@ -147,14 +147,14 @@ std::optional<Cause> Explainer::cause_of(const LimitView& view, const CycleRecor
   }
   if (view.is_ramp && view.change > 0) {
     if (is_braking_) {
-      behind_ = bends_ahead_ ? Cause::kBend : view.cause;
-      decide(behind_);
+      speeds_up_from_ = bends_ahead_ ? Cause::kBend : view.cause;
+      decide(speeds_up_from_);
       is_braking_ = false;
     }
-    return behind_;
+    return speeds_up_from_;
   }
-  behind_ = view.cause == Cause::kFeed ? Cause::kPath : view.cause;
-  decide(behind_);
+  speeds_up_from_ = view.cause == Cause::kFeed ? Cause::kPath : view.cause;
+  decide(speeds_up_from_);
   is_braking_ = false;
   return view.cause;
 }

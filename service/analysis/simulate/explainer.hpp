@@ -49,7 +49,7 @@ class Explainer {
   /// The axis was moved beside the pole by that much in blocks `first` to `last`.
   void add_ease(std::uint64_t first, std::uint64_t last, double deviation_rad);
 
-  /// One cycle of the program, behind the approach. `piece` and `path` are those in force, nullptr
+  /// One cycle of the program, after the approach. `piece` and `path` are those in force, nullptr
   /// for none; `piece_time` as in the cycle's state.
   void add_cycle(const CycleRecord& record, const TimePiece* piece, const PathPiece* path,
                  double piece_time, double tool_length_mm);
@@ -116,8 +116,8 @@ class Explainer {
   double span_begin_ = 0, span_length_ = 0;
   std::uint32_t window_ = 0;  ///< of the last cycle
   bool has_tip_ = false, is_braking_ = false;
-  bool bends_ahead_ = false;     ///< the path has bent since the motion brakes
-  Cause behind_ = Cause::kRest;  ///< that the motion speeds up from
+  bool bends_ahead_ = false;             ///< the path has bent since the motion brakes
+  Cause speeds_up_from_ = Cause::kRest;  ///< that the motion speeds up from
   Vector3 tip_ = Vector3::Zero();
 };
 

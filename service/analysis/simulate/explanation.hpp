@@ -38,7 +38,7 @@ struct ExplainedBlock {
   [[nodiscard]] Cause main_cause() const noexcept;
 };
 
-/// Blocks one behind the other that the same limit held for the same cause.
+/// Blocks one after the other that the same limit held for the same cause.
 struct ExplainedStretch {
   std::uint32_t first_line = 0, last_line = 0;
   std::uint64_t blocks = 0;

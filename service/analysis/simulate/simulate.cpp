@@ -19,7 +19,7 @@ namespace meridian::simulate {
 namespace {
 
 constexpr std::uint64_t kEnableCycle = 10;  ///< Off before it
-constexpr std::uint64_t kRestCycles = 10;   ///< at rest behind the end
+constexpr std::uint64_t kRestCycles = 10;   ///< at rest after the end
 
 /// One run: the world around step(), and the books.
 class Run {

@@ -57,7 +57,7 @@ MachineModel load_machine(const MachineOptions& options) {
     if (tool == nullptr) {
       throw config::ConfigError({.file = options.tools,
                                  .value = "tool " + std::to_string(options.tool) + " is not there",
-                                 .remedy = "name one of the table's behind --tool"});
+                                 .remedy = "name one of the table's after --tool"});
     }
     model.tool_length_mm = tool->tip_length_mm();
   }

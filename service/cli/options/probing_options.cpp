@@ -134,7 +134,7 @@ void print_contact(const ProbingRun& probing, const dds::Status& status,
   print_contact(probing, result.status, found);
   const int exit_code = note_contact(probing, tool, result.status);
   if (result.status.state != State::kReady) {
-    return print_failure("behind the contact: " + result.status.message, kVerdictNo);
+    return print_failure("after the contact: " + result.status.message, kVerdictNo);
   }
   return exit_code == kFine ? retract(probing, result, found.tip, toward) : exit_code;
 }

@@ -15,7 +15,7 @@
 namespace meridian {
 namespace {
 
-/// A window looks at that many knots behind its last control point.
+/// A window looks at that many knots after its last control point.
 constexpr std::int64_t kKnotsAhead = 7;
 /// Vertices that a window may lie over, unless it would have fewer points than kMinWindow: what
 /// the ring holds less what the knots look ahead and back.

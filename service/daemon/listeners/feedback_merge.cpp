@@ -110,7 +110,7 @@ void FeedbackMerge::bind(DriveSource& source, std::int64_t now_ns, bool may_hand
 void FeedbackMerge::take_guard(DriveSource& source, std::int64_t now_ns) noexcept {
   for (DriveSource& other : sources_.slots) {
     const bool is_silent = now_ns - other.arrival_ns > kSilence_ns;
-    // Only who came behind the silence: who spoke all the while is another one.
+    // Only who came after the silence: who spoke all the while is another one.
     const bool is_heir = other.group == source.group && source.first_ns > other.arrival_ns;
     if (other.guard == GuardInput::kNone || !is_silent || !is_heir) continue;
     other.guard = GuardInput::kNone;

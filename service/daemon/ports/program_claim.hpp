@@ -10,7 +10,7 @@ namespace meridian::interpolator {
 /// other one is refused. Both sides ask once and wait for nobody.
 ///
 /// Memory order. Whoever comes after sees what the holder before did: give_back() releases,
-/// try_take() acquires. So a session that is opened behind a change finds the new frame.
+/// try_take() acquires. So a session that is opened after a change finds the new frame.
 /// Proof: tests/unit/daemon/program_claim_test.cpp.
 class ProgramClaim {
  public:

@@ -44,9 +44,9 @@ void TelemetryThread::forget_approach() {
 
 std::string TelemetryThread::with_approach(const std::string& words) const {
   const State state = view_.record.state;
-  const bool is_ahead = state == State::kLoaded || state == State::kApproaching;
+  const bool is_newer = state == State::kLoaded || state == State::kApproaching;
   const std::string front = words + "; ";
-  if (!is_ahead || approach_.empty() || front.size() >= dds::kMaxText) return words;
+  if (!is_newer || approach_.empty() || front.size() >= dds::kMaxText) return words;
   const std::string both =
       front + telemetry::describe(planned_approach_, model_, dds::kMaxText - front.size());
   return both.size() <= dds::kMaxText ? both : words;
@@ -80,9 +80,9 @@ void TelemetryThread::take_view() {
   constexpr int kMaxLooks = 25;
   (void)ports_.telemetry_view.refresh();
   const CycleView& newest = ports_.telemetry_view.latest();
-  const bool is_ahead = newest.record.state != state_of_events_;
+  const bool is_newer = newest.record.state != state_of_events_;
   const bool is_last = ports_.is_stopping.load(std::memory_order_relaxed);
-  if (is_ahead && !is_last && ++looks_ahead_ <= kMaxLooks) return;
+  if (is_newer && !is_last && ++looks_ahead_ <= kMaxLooks) return;
   looks_ahead_ = 0;
   view_ = newest;
   state_of_events_ = newest.record.state;

@@ -72,7 +72,7 @@ void TelemetryThread::run() noexcept {
   if (!in_force_.soft_limits.empty()) record_limits(0);
   while (!ports_.is_stopping.load(std::memory_order_relaxed)) {
     drain();
-    // At once: behind actions that are done at once, in a dry run, the way is begun as soon as it
+    // At once: after actions that are done at once, in a dry run, the way is begun as soon as it
     // is planned.
     if (take_approach()) has_news_ = true;
     if (take_set_up()) has_news_ = true;

@@ -99,7 +99,7 @@ void HalHardware::write(int axis, const drive::Output& output) noexcept {
   set(setpoint_.on_mask, output.is_on);
   set(setpoint_.homing_mask, output.is_homing);
   set(setpoint_.reset_mask, output.is_reset);
-  // Behind a pulse it is asked for anew: one period without it.
+  // After a pulse it is asked for anew: one period without it.
   const bool is_pulse = joint.index_count != report_.index_count[i];
   set(setpoint_.index_mask, joint.homing == drive::HomingMethod::kByIndex && output.is_on &&
                                 !joint.is_referenced && !is_pulse);

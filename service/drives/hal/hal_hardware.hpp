@@ -17,7 +17,7 @@ namespace meridian::hal {
 /// RT in every function but the constructor and act(). Proof: tests/unit/hal/hal_hardware_test.cpp.
 class HalHardware final : public drive::Hardware {
  public:
-  /// Writes the set-up and begins behind the setpoints that are there. `bridge_ns`: the component
+  /// Writes the set-up and begins after the setpoints that are there. `bridge_ns`: the component
   /// goes on so long without setpoints. `shared` outlives this.
   HalHardware(meridian_hal_shared& shared, const std::vector<drive::Axis>& axes,
               std::int64_t period_ns, std::int64_t bridge_ns);

@@ -8,7 +8,7 @@
 
 namespace meridian::hal {
 
-/// How an axis finds its reference in HAL, as it is written behind --homing:
+/// How an axis finds its reference in HAL, as it is written after --homing:
 ///
 ///     X=hal                    HAL searches: home-request, homed
 ///     X=index:-5:0:400         to the index pulse with -5 mm/s (a rotary axis: deg/s), which is

@@ -14,7 +14,7 @@ extern "C" {
 #define MERIDIAN_HAL_FILE "/meridian-hal-"  // and the name of the machine: POSIX shared memory
 #define MERIDIAN_HAL_MAGIC 0x4D484C34u      // "MHL4": another layout, another magic
 #define MERIDIAN_HAL_JOINTS 6
-#define MERIDIAN_HAL_KEPT 64  // setpoints that the component can look back on, behind a stall too
+#define MERIDIAN_HAL_KEPT 64  // setpoints that the component can look back on, after a stall too
 
 /// Written once, before `magic`.
 struct meridian_hal_setup {

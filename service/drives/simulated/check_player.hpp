@@ -31,7 +31,7 @@ class CheckPlayer {
   static constexpr int kBridge = 20;      ///< lost setpoints that it wants bridged
   static constexpr int kPatience = 3000;  ///< periods for what a drive may take its time for
   static constexpr std::uint64_t kServiceId = 0xC4EC, kOtherId = 0x07E2, kRestartedId = 0x4E57;
-  using Also = std::function<void(CheckedDrives&)>;  ///< said behind the setpoint of a period
+  using Also = std::function<void(CheckedDrives&)>;  ///< said after the setpoint of a period
 
   CheckPlayer(const MachineModel& model, CheckedDrives& drives);
 

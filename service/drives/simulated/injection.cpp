@@ -45,7 +45,7 @@ constexpr std::array<InjectionWord, 21> kWords{{
 }
 
 /// Cuts what stands behind the last `mark` off `text`; empty where there is none.
-[[nodiscard]] std::string_view cut_behind(std::string_view& text, char mark) {
+[[nodiscard]] std::string_view cut_after(std::string_view& text, char mark) {
   const std::size_t at = text.rfind(mark);
   if (at == std::string_view::npos) return {};
   const std::string_view part = text.substr(at + 1);
@@ -79,18 +79,18 @@ Expected<Injection, std::string> parse_injection(const std::string& text,
   };
   std::string_view rest = text;
   const bool has_value = rest.find('=') != std::string_view::npos;
-  const std::string_view value = cut_behind(rest, '=');
+  const std::string_view value = cut_after(rest, '=');
   const bool has_drive = rest.find(':') != std::string_view::npos;
-  const std::string_view name = cut_behind(rest, ':');
+  const std::string_view name = cut_after(rest, ':');
   const bool has_time = rest.find('@') != std::string_view::npos;
-  const std::string_view time = cut_behind(rest, '@');
+  const std::string_view time = cut_after(rest, '@');
   const auto word = std::find_if(kWords.begin(), kWords.end(),
                                  [&](const auto& known) { return rest == known.word; });
   if (word == kWords.end()) return refuse("KIND is one of " + all_injection_words());
 
   Injection injection{word->kind, 0, 0, word->value};
   if (has_time && !(read_number(time, injection.after_s) && injection.after_s >= 0)) {
-    return refuse("behind @ stand seconds");
+    return refuse("after @ stand seconds");
   }
   if (has_drive && !word->has_drive) return refuse(std::string(rest).append(" is of no drive"));
   while (has_drive && injection.drive < model.joint_count &&
@@ -103,7 +103,7 @@ Expected<Injection, std::string> parse_injection(const std::string& text,
   if (has_value && word->unit == nullptr)
     return refuse(std::string(rest).append(" takes no value"));
   if (has_value && !(read_number(value, injection.value) && std::abs(injection.value) <= 1e6)) {
-    return refuse(std::string("behind = stand ") + word->unit);
+    return refuse(std::string("after = stand ") + word->unit);
   }
   const bool is_signed = word->kind == Kind::kSpike || word->kind == Kind::kCreep;
   if (!is_signed && injection.value < 0) return refuse("its value is not negative");

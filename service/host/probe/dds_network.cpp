@@ -14,7 +14,7 @@
 namespace meridian::probe {
 namespace {
 
-/// The XML that CYCLONEDDS_URI means: itself, or files, one behind the other. Nothing where one of
+/// The XML that CYCLONEDDS_URI means: itself, or files, one after the other. Nothing where one of
 /// them cannot be read; `missing` is it then.
 [[nodiscard]] std::optional<std::string> read_uri(const HostFiles& host, const std::string& uri,
                                                   std::string& missing) {

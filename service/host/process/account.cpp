@@ -36,7 +36,7 @@ struct Stat {
   int policy = 0, priority = 0;
 };
 
-/// Fields 10, 12, 40 and 41 of a stat file, counted behind the name in brackets.
+/// Fields 10, 12, 40 and 41 of a stat file, counted after the name in brackets.
 [[nodiscard]] Stat read_stat(const fs::path& path) {
   Stat stat;
   std::ifstream file(path);

@@ -51,7 +51,7 @@ class Plant {
   /// "soak" where they were not kept.
   [[nodiscard]] std::string keep_logs();
   /// Copies what the flight recorder wrote of the fault whose logs were kept last, as
-  /// NAMEn.flight.csv; the service has it ready about a second behind the fault. Nothing where it
+  /// NAMEn.flight.csv; the service has it ready about a second after the fault. Nothing where it
   /// wrote nothing. Proof: tests/unit/soak/evidence_test.cpp.
   void keep_flight();
   [[nodiscard]] bool awaits_flight() const { return !flight_of_.empty(); }

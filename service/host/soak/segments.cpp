@@ -8,7 +8,7 @@
 namespace meridian::soak {
 namespace {
 
-/// Rows of Ready, Off or Fault behind a program that end its segment.
+/// Rows of Ready, Off or Fault after a program that end its segment.
 constexpr int kRestRows = 50;
 
 [[nodiscard]] std::string_view cell(std::string_view line, std::size_t column) {

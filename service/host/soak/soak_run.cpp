@@ -17,7 +17,7 @@ namespace {
 using std::chrono::milliseconds;
 constexpr milliseconds kTick{20};
 constexpr double kReportEvery_s = 2, kHealthEvery_s = 1;
-constexpr double kFlightWritten_s = 3;  // half a second of record behind the fault, then the disk
+constexpr double kFlightWritten_s = 3;  // half a second of record after the fault, then the disk
 /// Nothing moves for this long although nobody holds the machine: something is stuck.
 constexpr double kStuck_s = 60;
 

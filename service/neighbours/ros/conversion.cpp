@@ -41,7 +41,7 @@ class EventMerge {
       write(row);
     }
   }
-  /// Writes those behind the last row.
+  /// Writes those after the last row.
   [[nodiscard]] std::optional<RecordError> write_rest(const RecordingRow& last) {
     for (;;) {
       if (auto error = look()) return error;
@@ -51,7 +51,7 @@ class EventMerge {
   }
 
  private:
-  /// Makes `next_` the row to write next; nothing behind the last one.
+  /// Makes `next_` the row to write next; nothing after the last one.
   [[nodiscard]] std::optional<RecordError> look() {
     if (next_) return std::nullopt;
     auto read = events_.next();
@@ -91,7 +91,7 @@ class EventMerge {
   const bool is_recording = std::filesystem::equivalent(in, out, error);
   const bool is_events = std::filesystem::equivalent(record::operator_events_path(in), out, error);
   if (!is_recording && !is_events) return std::nullopt;
-  return RecordError{out, 0, "is what is to be converted", "name another file behind --mcap"};
+  return RecordError{out, 0, "is what is to be converted", "name another file after --mcap"};
 }
 
 [[nodiscard]] std::optional<RecordError> copy_rows(RecordingReader& recording, MotionFile& file,

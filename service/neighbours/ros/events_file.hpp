@@ -23,7 +23,7 @@ class EventsFile {
  public:
   /// A file that is not there is one without rows.
   explicit EventsFile(const std::string& path);
-  /// The next row; nothing behind the last one.
+  /// The next row; nothing after the last one.
   [[nodiscard]] Expected<std::optional<EventsRow>, record::RecordError> next();
 
  private:

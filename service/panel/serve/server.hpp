@@ -41,7 +41,7 @@ struct HttpUpload {
   std::function<std::int64_t(char* buffer, std::size_t size)> read;  ///< as read(2)
 };
 
-/// A path, and the numbers behind it: ?first=1&count=40.
+/// A path, and the numbers after it: ?first=1&count=40.
 struct HttpQuery {
   std::string_view path;
   std::function<std::uint64_t(const char* name)> number;  ///< 0: not there

@@ -38,7 +38,7 @@ struct ClReaderOptions {
   std::vector<std::string> allowed_words;       ///< `--allow-unknown`: become vendor words
   bool allow_no_end = false;                    ///< `--allow-no-end`: no FINI is no truncation
   ArcSense arc_sense = ArcSense::kByForm;
-  /// `--from-line`: the program begins with the first block from this line on, behind blocks that
+  /// `--from-line`: the program begins with the first block from this line on, after blocks that
   /// restore tool, spindle, coolant and place (restart.hpp); 0: from its begin.
   std::uint32_t first_line = 0;
   std::optional<Frame> frame;  ///< applied to every pose after the frames of the file

@@ -34,7 +34,7 @@ class ClReader {
   ClReader(const ClReader&) = delete;
   ClReader& operator=(const ClReader&) = delete;
 
-  /// The next block; nothing behind the block of kind kEnd. An error stays until go_on().
+  /// The next block; nothing after the block of kind kEnd. An error stays until go_on().
   [[nodiscard]] Expected<std::optional<ClBlock>, ClError> next();
 
   /// Leaves the refused statement out, so that next() finds what else is wrong with the file; what

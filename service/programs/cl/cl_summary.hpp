@@ -55,7 +55,7 @@ struct ClSummary {
   std::array<std::uint64_t, 8> blocks_by_kind{};  ///< index: BlockKind
   std::uint64_t goto_three = 0;                   ///< GOTO with position alone
   std::uint64_t goto_six = 0;                     ///< GOTO with position and tool axis
-  std::uint64_t listed_points = 0;                ///< lines of bare numbers behind a GOTO
+  std::uint64_t listed_points = 0;                ///< lines of bare numbers after a GOTO
   std::uint64_t arcs = 0;
   std::uint64_t full_circles = 0;
   std::uint64_t splines = 0;
@@ -66,7 +66,7 @@ struct ClSummary {
   LengthUnit unit = LengthUnit::kMillimetre;
   UnitSource unit_source = UnitSource::kFile;
   bool is_suspected_metric = false;                    ///< an inch file that is plainly metric
-  std::uint8_t decimals = 0;                           ///< most behind the point of any coordinate
+  std::uint8_t decimals = 0;                           ///< most after the point of any coordinate
   Array3 box_min_mm{kInfinity, kInfinity, kInfinity};  ///< of all ends of blocks
   Array3 box_max_mm{-kInfinity, -kInfinity, -kInfinity};
   double tilt_min_rad = kInfinity;  ///< angle of the tool axis from +z of W

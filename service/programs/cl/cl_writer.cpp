@@ -85,7 +85,7 @@ void ClWriter::write_motion(const ClBlock& b) {
   }
   std::string point;
   add(point, b.tip_mm, kTipDecimals);
-  // What a missing axis means behind a tilted one differs from system to system.
+  // What a missing axis means after a tilted one differs from system to system.
   const bool is_tilted = b.axis != Array3{0, 0, 1};
   if (!has_axis_ || is_tilted || b.axis != axis_) add(point, b.axis, kAxisDecimals);
   axis_ = b.axis;

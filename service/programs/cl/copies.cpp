@@ -69,7 +69,7 @@ Outcome Copies::repeat(std::uint32_t number, const Frame& step, std::uint32_t ti
   if (now.is_in_cycle != pattern->start.is_in_cycle) {
     return refuse("COPY: a cycle is in force at " + std::string(now.is_in_cycle ? "COPY" : from) +
                       " and not at " + (now.is_in_cycle ? from : "COPY"),
-                  "CYCLE/OFF inside the pattern, or behind COPY");
+                  "CYCLE/OFF inside the pattern, or after COPY");
   }
   const std::size_t end = pattern->end.value_or(here());
   if (end <= pattern->begin) return refuse("COPY: there is nothing between it and " + from);

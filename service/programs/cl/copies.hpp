@@ -45,7 +45,7 @@ class Copies {
   /// The next statement of the pattern that is repeated, where is_repeating(). It carries the line
   /// of the outermost COPY: lines of blocks never run back.
   [[nodiscard]] RecordedStatement next();
-  /// To be called behind every statement of a pattern: goes on to the next pass where one is over.
+  /// To be called after every statement of a pattern: goes on to the next pass where one is over.
   /// True where the transformation changed.
   bool go_on();
   /// The transformation of all passes in force.

@@ -46,7 +46,7 @@ constexpr std::array kKeys = std::to_array<KeyRow>({
 
 constexpr std::size_t kMaxPecks = 64;
 
-/// Takes the arguments of a CYCLE statement one behind the other.
+/// Takes the arguments of a CYCLE statement one after the other.
 class CycleArguments {
  public:
   explicit CycleArguments(const Statement& s) : s_(s), at_(1) {}

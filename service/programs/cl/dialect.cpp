@@ -50,8 +50,8 @@ bool holds(std::string_view text, std::string_view what) {
   for (auto at = text.begin();; ++at) {
     at = std::search(at, text.end(), what.begin(), what.end(), same);
     if (at == text.end()) return false;
-    const auto behind = at + static_cast<std::ptrdiff_t>(what.size());
-    if ((at == text.begin() || !is_letter(at[-1])) && (behind == text.end() || !is_letter(*behind)))
+    const auto rest = at + static_cast<std::ptrdiff_t>(what.size());
+    if ((at == text.begin() || !is_letter(at[-1])) && (rest == text.end() || !is_letter(*rest)))
       return true;
   }
 }

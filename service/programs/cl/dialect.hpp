@@ -52,7 +52,7 @@ struct DialectTraits {
   std::string_view name;   ///< of `--dialect`
   std::string_view title;  ///< of the summary
   MissingAxis missing_axis;
-  bool has_point_lists;    ///< lines of bare numbers behind a GOTO are more points
+  bool has_point_lists;    ///< lines of bare numbers after a GOTO are more points
   bool depth_is_negative;  ///< FEDTO counts down from the point with its sign
   CycleNumbers cycle_numbers;
 };

@@ -13,7 +13,7 @@ namespace {
 /// A G code, and what has to stand behind it.
 struct FanucCode {
   std::string_view number;
-  std::string_view behind = {};
+  std::string_view rest = {};
 };
 /// LinuxCNC has splines in G5 and G5.1, and G8 of lathes.
 constexpr std::array kOfFanuc = std::to_array<FanucCode>({
@@ -32,18 +32,18 @@ constexpr std::array kOfFanuc = std::to_array<FanucCode>({
 });
 constexpr std::array kLikeFanuc = std::to_array<FanucCode>({{"43"}, {"49"}, {"28"}, {"80"}});
 
-std::string_view behind_blanks(std::string_view text) {
+std::string_view after_blanks(std::string_view text) {
   return text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
 }
 
 /// Whether `text`, behind a G, begins with that code. Leading zeros do not count.
 bool is_fanuc_code(std::string_view text, const FanucCode& code) {
-  text = behind_blanks(text);
+  text = after_blanks(text);
   while (text.size() > 1 && text.front() == '0') text.remove_prefix(1);
   if (!text.starts_with(code.number)) return false;
   text.remove_prefix(code.number.size());
   if (!text.empty() && (text.front() == '.' || is_digit(text.front()))) return false;
-  return behind_blanks(text).starts_with(code.behind);
+  return after_blanks(text).starts_with(code.rest);
 }
 
 std::string find_fanuc_code(std::string_view text, std::span<const FanucCode> codes) {
@@ -57,8 +57,8 @@ std::string find_fanuc_code(std::string_view text, std::span<const FanucCode> co
       return is_fanuc_code(text.substr(at + 1), code);
     });
     if (found == codes.end()) continue;
-    return "G" + std::string(found->number) + (found->behind.empty() ? "" : " ") +
-           std::string(found->behind);
+    return "G" + std::string(found->number) + (found->rest.empty() ? "" : " ") +
+           std::string(found->rest);
   }
   return {};
 }

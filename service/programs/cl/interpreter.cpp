@@ -114,16 +114,16 @@ Outcome Interpreter::read(const Statement& s) {
   return row->handler(modal_, s);
 }
 
-/// Behind END the machine may be switched off, and nothing else: the blocks from `before` on.
-Outcome Interpreter::check_behind_end(const Statement& s, std::size_t before, Blocks& out) const {
+/// After END the machine may be switched off, and nothing else: the blocks from `before` on.
+Outcome Interpreter::check_after_end(const Statement& s, std::size_t before, Blocks& out) const {
   const auto first = out.begin() + static_cast<std::ptrdiff_t>(before);
   const bool is_harmless = std::all_of(first, out.end(), [](const ClBlock& b) {
     return b.kind == BlockKind::kEnd || b.action == ActionKind::kSpindleOff ||
            b.action == ActionKind::kCoolantOff;
   });
   if (is_harmless) return {};
-  return refuse(std::string(s.major) + " behind the end of the program",
-                "split the file: one program each", "behind end");
+  return refuse(std::string(s.major) + " after the end of the program",
+                "split the file: one program each", "after end");
 }
 
 /// In exact stop a cut ends in a rest; what the reader subdivides, as a spline, rests at its end
@@ -135,12 +135,12 @@ void Interpreter::rest_at_end(std::uint32_t line, std::size_t before, const Bloc
 }
 
 Interpreter::Result Interpreter::take(const Statement& s, Blocks& out) {
-  const bool is_behind_end = modal_.structure.phase == Structure::Phase::kEnded;
+  const bool is_after_end = modal_.structure.phase == Structure::Phase::kEnded;
   const std::size_t before = out.size();
   modal_.path.give_to(out);
   modal_.copies.record(s);
   auto done = read(s);
-  if (done && is_behind_end) done = check_behind_end(s, before, out);
+  if (done && is_after_end) done = check_after_end(s, before, out);
   if (done) [[likely]] {
     rest_at_end(s.line, before, out);
     return {};

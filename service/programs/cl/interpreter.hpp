@@ -52,7 +52,7 @@ class Interpreter {
   [[nodiscard]] Outcome read(const Statement& s);
   [[nodiscard]] Outcome read_comment_data(const Statement& s);
   [[nodiscard]] Outcome read_unknown(const Statement& s);
-  [[nodiscard]] Outcome check_behind_end(const Statement& s, std::size_t before, Blocks& out) const;
+  [[nodiscard]] Outcome check_after_end(const Statement& s, std::size_t before, Blocks& out) const;
   void rest_at_end(std::uint32_t line, std::size_t before, const Blocks& out);
   [[nodiscard]] Outcome check_whole(std::uint32_t last_line, bool open_end);
 

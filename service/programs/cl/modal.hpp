@@ -40,7 +40,7 @@ struct ToolAxis {
   Source source = Source::kNone;
 };
 
-/// How a cut joins the motion behind it.
+/// How a cut joins the motion after it.
 enum class BlockJoin : std::uint8_t {
   kByMachine,  ///< as machine file, station or `--transition` say
   kExactStop   ///< the tool rests where the cut ends
@@ -66,7 +66,7 @@ struct PendingArc {
 struct PendingSpline {
   std::uint32_t line = 0;
   std::vector<double> knots;                  ///< inner knots and one at the end
-  std::vector<std::array<double, 6>> points;  ///< behind the first, which is where the tool is
+  std::vector<std::array<double, 6>> points;  ///< after the first, which is where the tool is
   bool has_axes = false;
 };
 

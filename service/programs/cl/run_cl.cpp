@@ -19,11 +19,11 @@ constexpr int kFine = 0;
 constexpr int kInputRefused = 3;
 constexpr std::size_t kFlushAt = 256 * 1024;
 
-void append(std::string& text, double value, char behind) {
+void append(std::string& text, double value, char rest) {
   std::array<char, 32> digits{};
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value + 0.0).ptr;
   text.append(digits.data(), end);
-  text.push_back(behind);
+  text.push_back(rest);
 }
 
 void append(std::string& text, const ClPoint& point) {

@@ -196,7 +196,7 @@ cl::Outcome act_before(State& s, const Line& line) {
   return {};
 }
 
-cl::Outcome act_behind(State& s, const Line& line) {
+cl::Outcome act_after(State& s, const Line& line) {
   for (const Word& word : line.words) {
     const MRow* const row = word.is('M') ? find_m(word.number) : nullptr;
     if (!word.is('M') || comes_before(row)) continue;

@@ -244,7 +244,7 @@ cl::Outcome run_motion(State& s, const Line& line, OneShot shot) {
   return move(s, line);
 }
 
-/// MCALL and what it calls: behind a line that moves, or where the tool stands.
+/// MCALL and what it calls: after a line that moves, or where the tool stands.
 cl::Outcome run_holes(State& s, const Line& line, const NameOutcome& names, OneShot shot) {
   using Holes = NameOutcome::Holes;
   switch (names.holes) {
@@ -282,7 +282,7 @@ cl::Outcome run_block(State& s, const Line& line) {
   if (auto done = act_before(s, line); !done) return done;
   if (auto done = run_motion(s, line, shot); !done) return done;
   if (auto done = run_holes(s, line, *names, shot); !done) return done;
-  return act_behind(s, line);
+  return act_after(s, line);
 }
 
 }  // namespace meridian::nc

@@ -53,7 +53,7 @@ std::string remedy_of_unknown(int offset) {
   const int frame = frame_of(offset);
   if (frame == 0) {
     return "write " + name_of(offset) +
-           " behind the last motion alone; for a place of the machine SUPA with axis words";
+           " after the last motion alone; for a place of the machine SUPA with axis words";
   }
   return "--work-zero " + std::to_string(frame) +
          "=X,Y,Z, or ctl frame set; or split the program: one for each";
@@ -131,19 +131,18 @@ cl::Outcome check_work_offset(State& s, const Line& line) {
   constexpr int kFirst = 540;
   if (from == 0 && !(to == kFirst && s.modes.language == Language::kFanuc)) {
     return refuse(name_of(to) +
-                      " behind motion without a work offset: where that was only the "
+                      " after motion without a work offset: where that was only the "
                       "control knows",
                   "name the work offset before the first motion", "second offset");
   }
   if (from == 0) {
     s.cl.remarks.warn("late offset", line.number, [] {
-      return std::string(
-          "G54 behind motion without a work offset: that is taken to lie in G54 too");
+      return std::string("G54 after motion without a work offset: that is taken to lie in G54 too");
     });
   } else if (!zero_of(s, to) || !zero_of(s, from)) {
     const int missing = zero_of(s, to) ? from : to;
-    return refuse("a second work offset (" + name_of(to) + " behind " + name_of(from) +
-                      "): where " + name_of(missing) + " lies only the control knows",
+    return refuse("a second work offset (" + name_of(to) + " after " + name_of(from) + "): where " +
+                      name_of(missing) + " lies only the control knows",
                   remedy_of_unknown(missing), "second offset");
   }
   note_offset(s, name_of(to));
@@ -153,7 +152,7 @@ cl::Outcome check_work_offset(State& s, const Line& line) {
 
 cl::Outcome set_unit(State& s, cl::LengthUnit unit) {
   if (s.cl.units.in_force && *s.cl.units.in_force != unit && !s.cl.options.unit) {
-    return refuse("the unit changes behind the first motion", "split the program");
+    return refuse("the unit changes after the first motion", "split the program");
   }
   s.cl.units.stated = unit;
   return {};

@@ -46,7 +46,7 @@ void set_frames(State& s, const Line& line, const cl::Frame& shift, const cl::Fr
   s.modes.pole = {};
   if (s.cl.path.has_moved()) ++s.cl.summary.frame_changes;
   s.cl.remarks.warn("frame", line.number, [] {
-    return std::string("the program changes its frame: points behind it are put through it");
+    return std::string("the program changes its frame: points after it are put through it");
   });
 }
 

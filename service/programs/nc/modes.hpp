@@ -70,7 +70,7 @@ struct Orientation {
   Axes axes = Axes::kOfPart;
 };
 
-/// CYCL DEF of Klartext: a cycle with the Q parameters that the lines behind it give.
+/// CYCL DEF of Klartext: a cycle with the Q parameters that the lines after it give.
 struct CycleDefinition {
   int number = 0;
   std::map<int, double> parameters;

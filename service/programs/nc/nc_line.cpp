@@ -58,7 +58,7 @@ class Cutter {
     if (c == '<' && line_.words.empty()) return take_name();
     if (c == '/' && line_.words.empty()) {
       line_.has_block_delete = true;
-      rest_.remove_prefix(!has_letter_behind() ? 2 : 1);
+      rest_.remove_prefix(!has_letter_next() ? 2 : 1);
       return {};
     }
     if (cl::is_letter(c) || c == ':') return cut_word();
@@ -77,13 +77,12 @@ class Cutter {
   }
 
   /// `/2 X1.`: the number of the switch stands behind the sign.
-  [[nodiscard]] bool has_letter_behind() const { return rest_.size() < 2 || !is_digit(rest_[1]); }
+  [[nodiscard]] bool has_letter_next() const { return rest_.size() < 2 || !is_digit(rest_[1]); }
 
   [[nodiscard]] static cl::Outcome refuse_sign(char c) {
     if (c == '#') return refuse("a variable (#)", kMovesByCam, "variables");
     if (c == '[') return refuse("an expression ([ ])", kMovesByCam, "variables");
-    if (c == ',')
-      return refuse("a word behind a comma (chamfer or rounding)", kMovesByCam, "comma");
+    if (c == ',') return refuse("a word after a comma (chamfer or rounding)", kMovesByCam, "comma");
     return refuse("what begins with " + cl::quoted(std::string_view(&c, 1)) +
                   " is no NC word with a number");
   }
@@ -121,7 +120,7 @@ class Cutter {
     word.digits = from.substr(at, stop - at);
     word.has_point = word.digits.find('.') != std::string_view::npos;
     if (!cl::parse_number(word.digits, word.number, word.decimals)) {
-      return refuse("address " + std::string(word.address) + " without a number behind it");
+      return refuse("address " + std::string(word.address) + " without a number after it");
     }
     rest_.remove_prefix(stop);
     return add(word);
@@ -134,7 +133,7 @@ class Cutter {
         return refuse(
             "two tools in one block: on some controls the first is changed and the second comes "
             "next, on others the last one counts",
-            "write the tool for M6 alone, and the next one in a block behind it", "T");
+            "write the tool for M6 alone, and the next one in a block after it", "T");
       }
       return refuse("address " + std::string(word.address) + " twice in one block",
                     "write one block for each");

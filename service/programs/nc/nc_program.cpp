@@ -112,7 +112,7 @@ cl::Outcome NcProgram::take(std::string_view text) {
   ++state_.cl.summary.statements;
   if (line_.has_block_delete) {
     state_.cl.remarks.warn("block delete", line_.number, [] {
-      return std::string("blocks behind / are run, as with the switch for them off");
+      return std::string("blocks after / are run, as with the switch for them off");
     });
   }
   return is_klartext ? run_heidenhain(state_, line_) : take_block();

@@ -212,7 +212,7 @@ bool ToolPosition::is_turned() const noexcept {
 
 void warn_of_unseen_rapid(State& s, const Line& line) {
   s.cl.remarks.warn("no tip", line.number, [] {
-    return "rapids behind which the tip is not known (rotary axes turned without tool-centre "
+    return "rapids after which the tip is not known (rotary axes turned without tool-centre "
            "control, or not all of X Y Z given) are no part of the path: the next motion goes "
            "straight from the point before them; see that nothing is in the way";
   });

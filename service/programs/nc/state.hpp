@@ -140,8 +140,8 @@ void set_preset(State& s, const Line& line, int row);
 // actions.cpp
 /// F, S and T, and M codes that come before the motion of their block.
 [[nodiscard]] cl::Outcome act_before(State& s, const Line& line);
-/// M codes that come behind it: stops, spindle and coolant off, the end.
-[[nodiscard]] cl::Outcome act_behind(State& s, const Line& line);
+/// M codes that come after it: stops, spindle and coolant off, the end.
+[[nodiscard]] cl::Outcome act_after(State& s, const Line& line);
 [[nodiscard]] cl::Outcome dwell(State& s, const Line& line);
 [[nodiscard]] cl::Outcome rest(State& s, const Line& line, double time_s);
 /// G4 F in seconds, G4 S in revolutions of the spindle.

@@ -94,7 +94,7 @@ cl::Outcome begin_part(PlaneInParts& parts, int form, int q) {
   }
   parts = {};
   return refuse("G68.2 P" + std::to_string(form) + " Q" + std::to_string(q) +
-                    " out of its order: Q1, Q2 and on, one behind the other",
+                    " out of its order: Q1, Q2 and on, one after the other",
                 kByEuler, "G68.2 Q");
 }
 

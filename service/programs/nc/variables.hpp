@@ -17,7 +17,7 @@ class Variables {
  public:
   static constexpr std::size_t kMax = 1000;
 
-  /// Takes the text behind DEF: "REAL _X, _Y=2.5".
+  /// Takes the text after DEF: "REAL _X, _Y=2.5".
   [[nodiscard]] cl::Outcome declare(std::string_view text);
   [[nodiscard]] bool has(std::string_view name) const { return numbers_.contains(name); }
   /// Gives a declared name, or an R parameter, its number.

@@ -7,7 +7,7 @@
 /// Numbers and comments as controllers read them.
 namespace meridian::post {
 
-/// `value` with exactly `decimals` digits behind the point; no exponent, never "-0.000".
+/// `value` with exactly `decimals` digits after the point; no exponent, never "-0.000".
 [[nodiscard]] std::string fixed(double value, int decimals);
 
 /// The number that fixed() writes.

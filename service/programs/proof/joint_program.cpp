@@ -208,7 +208,7 @@ class Reader {
   }
 
   [[nodiscard]] std::string carry_out(const LineWords& asked) {
-    if (is_ended_) return "the program goes on behind its end";
+    if (is_ended_) return "the program goes on after its end";
     if (asked.is_tool_change) {
       if (!asked.tool || !asked.axes.empty()) return "a tool change is Tn M6 alone";
       steps_.push_back({ProgramStep::Kind::kTool, line_, *asked.tool, drives_, is_placed()});

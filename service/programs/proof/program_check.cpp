@@ -67,10 +67,10 @@ class SectionCheck {
     if (begin == section_.steps.size()) {
       return add("no line ends on the first CL point", 0, path.begin_line());
     }
-    if (path.elements().empty()) return refuse_cuts(begin + 1, "cuts behind the last CL point");
+    if (path.elements().empty()) return refuse_cuts(begin + 1, "cuts after the last CL point");
     const std::size_t end = find(path.end(), length, begin, section_.steps.size(), true);
     match(begin, end == section_.steps.size() ? last_motion() : end);
-    if (end != section_.steps.size()) refuse_cuts(end + 1, "cuts behind the last CL point");
+    if (end != section_.steps.size()) refuse_cuts(end + 1, "cuts after the last CL point");
   }
 
  private:

@@ -12,9 +12,9 @@ using Row = std::array<double, kMaxDegree + 1>;
 std::size_t piece_at(const std::vector<double>& knots, std::size_t degree, double t) noexcept {
   const auto begin = knots.begin() + static_cast<std::ptrdiff_t>(degree);
   const auto end = knots.end() - static_cast<std::ptrdiff_t>(degree) - 1;
-  auto behind = std::upper_bound(begin, end, t);
-  if (behind == end) behind = std::lower_bound(begin, end, *end);  // t is the end of the domain
-  return static_cast<std::size_t>(behind - knots.begin()) - 1;
+  auto after = std::upper_bound(begin, end, t);
+  if (after == end) after = std::lower_bound(begin, end, *end);  // t is the end of the domain
+  return static_cast<std::size_t>(after - knots.begin()) - 1;
 }
 
 /// Values of degree q from those of degree q - 1 on piece s: entry i stands for function s - q + i.

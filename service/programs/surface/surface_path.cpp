@@ -101,10 +101,10 @@ class Cover {
           const bool is_u = is_along == rule_.runs_along_u;
           return shape_at(*rule_.surface, is_u ? at : other, is_u ? other : at, rule_.is_flipped);
         };
-        const auto before = shape(breaks[i] - beside), behind = shape(breaks[i] + beside);
-        if (!before || !behind) continue;
-        const double turn = std::atan2(before->normal.cross(behind->normal).norm(),
-                                       before->normal.dot(behind->normal));
+        const auto before = shape(breaks[i] - beside), after = shape(breaks[i] + beside);
+        if (!before || !after) continue;
+        const double turn = std::atan2(before->normal.cross(after->normal).norm(),
+                                       before->normal.dot(after->normal));
         if (turn < kCrease_rad || fault_) continue;
         fault_ = PathFault{crease_text(is_along == rule_.runs_along_u, breaks[i], turn),
                            "write a patch for each side, or cover one side: path.range_u or "

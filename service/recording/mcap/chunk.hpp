@@ -17,7 +17,7 @@ struct ChunkEntry {
   std::uint64_t first_ns = 0, last_ns = 0;   ///< earliest and latest message
   std::uint64_t offset = 0, length = 0;      ///< of the chunk's record in the file
   std::vector<std::uint64_t> index_offsets;  ///< by channel; 0: it has no message there
-  std::uint64_t index_length = 0;            ///< of all message indexes behind the chunk
+  std::uint64_t index_length = 0;            ///< of all message indexes after the chunk
   std::uint64_t packed_size = 0, plain_size = 0;
   std::string_view compression;
 };

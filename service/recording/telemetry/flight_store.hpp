@@ -14,7 +14,7 @@
 namespace meridian::telemetry {
 
 /// The last rows of a run in fixed memory, which freeze where the machine came to rest behind a
-/// fault. At most half of them are from behind the begin of the fault, however long the stop took;
+/// fault. At most half of them are from after the begin of the fault, however long the stop took;
 /// so the rest is from before it, if the run was that long since the begin or the last thaw(). A
 /// second fault while the first is still being kept freezes it and counts as missed. One thread
 /// puts in (take, finish), another takes out: what is frozen is the reader's until thaw(), and
@@ -23,7 +23,7 @@ class FlightStore {
  public:
   static constexpr std::size_t kMaxAlarms = 8, kMaxEvents = 256;
 
-  /// `rows` 0: nothing is kept. So many rows as `tail` are kept behind the stop.
+  /// `rows` 0: nothing is kept. So many rows as `tail` are kept after the stop.
   FlightStore(std::size_t rows, std::size_t tail) : rows_(rows), tail_(tail) {}
 
   /// Putting in. The newest report goes with every row that follows.

@@ -90,7 +90,7 @@ inline constexpr std::size_t kPositionBytes = 256;
 void read_position(std::string_view text, JournalEntry& entry);
 
 /// What an operator is to know of it after a restart, in one line: the program, how far it came,
-/// and from which line to go on, the first that is not finished. Behind an alarm the drives may
+/// and from which line to go on, the first that is not finished. After an alarm the drives may
 /// have left the path earlier.
 [[nodiscard]] std::string describe(const JournalEntry& entry);
 

@@ -16,7 +16,7 @@ namespace meridian::telemetry {
 /// Decides from the events of the cycle when the journal gets a new entry, and which: whenever a
 /// program begins, comes to rest or ends, and once a second while its blocks go on; the position
 /// alone whenever there is a newer one. What the drives have not taken is not cut: an event counts
-/// once they say that they took the setpoint of its cycle. Behind a fault it names the block in
+/// once they say that they took the setpoint of its cycle. After a fault it names the block in
 /// which the alarm came, not where the commanded path ran out to. A dry run cuts nothing, nor
 /// does a move between programs: what was noted before stays. One thread.
 ///

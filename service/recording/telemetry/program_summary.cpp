@@ -26,8 +26,8 @@ namespace {
   }
 }
 
-/// Whether the machine rests behind the block of its record.
-[[nodiscard]] bool is_behind_block(State state) noexcept {
+/// Whether the machine rests after the block of its record.
+[[nodiscard]] bool is_after_block(State state) noexcept {
   return state == State::kStepping || state == State::kStarved;
 }
 
@@ -60,7 +60,7 @@ namespace {
   if (summary.end == ProgramEnd::kRan) return "ran to its end";
   return fmt::format("{} {} block {}, line {}",
                      summary.end == ProgramEnd::kAborted ? "was aborted" : "ended by a fault",
-                     summary.is_block_done ? "behind" : "in", summary.block, summary.line);
+                     summary.is_block_done ? "after" : "in", summary.block, summary.line);
 }
 
 /// The parts that took long enough to be printed.
@@ -94,7 +94,7 @@ void ProgramWatch::see(const CycleRecord& record, double feed_override,
   if (has_fault_) return;  // what the commanded path passes now was commanded, not cut
   now_.block = record.sequence;
   now_.line = record.setpoint.line;
-  now_.is_block_done = is_behind_block(record.state);
+  now_.is_block_done = is_after_block(record.state);
 }
 
 void ProgramWatch::begin(const CycleRecord& record) noexcept {

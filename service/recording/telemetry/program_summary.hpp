@@ -22,7 +22,7 @@ enum class ProgramPart : std::uint8_t {
   kRest,      ///< dwells, and actions that are waited for
   kHeld,      ///< by a hold or a program stop, or by an override of 0
   kStarved,   ///< at rest, no blocks there
-  kStepping,  ///< single block: behind a block, waiting for the operator
+  kStepping,  ///< single block: after a block, waiting for the operator
 };
 inline constexpr std::size_t kProgramParts = 8;
 

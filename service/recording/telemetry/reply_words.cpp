@@ -144,7 +144,7 @@ std::string describe(Verb verb, Refusal refusal, State state, double argument,
           "who commands them, the log names who it is";
       break;
     case Refusal::kOvertaken:
-      why = "a hold, an abort or disable was said behind it and came first; say it again";
+      why = "a hold, an abort or disable was said after it and came first; say it again";
       break;
     case Refusal::kNotJournalled:
       why = "the set-up is kept nowhere; give the service a state_directory, or --state";

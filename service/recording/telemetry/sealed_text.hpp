@@ -66,7 +66,7 @@ class Lines {
     has_failed_ = true;
     return 0;
   }
-  /// All that is behind the lines that were taken.
+  /// All that is after the line that were taken.
   [[nodiscard]] std::string_view rest() const noexcept { return text_; }
   [[nodiscard]] bool has_failed() const noexcept { return has_failed_; }
 

@@ -70,7 +70,7 @@ void Tracer::see(const SlowCycle& slow) {
     return;
   }
   if (pending_) {
-    if (!behind_ || slow.severity_ns() > behind_->severity_ns()) behind_ = slow;
+    if (!worst_later_ || slow.severity_ns() > worst_later_->severity_ns()) worst_later_ = slow;
     return;
   }
   if (!is_wanted(slow)) return;
@@ -116,7 +116,7 @@ void Tracer::write() {
   pending_.reset();
   say_(file.empty() ? "a trace cannot be written to " + options_.folder.string()
                     : describe(window.slow) + "; trace: " + file.string());
-  if (const auto slow = std::exchange(behind_, std::nullopt)) see(*slow);
+  if (const auto slow = std::exchange(worst_later_, std::nullopt)) see(*slow);
 }
 
 std::unique_ptr<Tracer> make_tracer(TraceOptions options, TraceOrigin origin, Rings& rings,

@@ -65,7 +65,8 @@ class Tracer {
     std::int64_t begin_ns = 0, end_ns = 0;
   };
   std::optional<Pending> pending_;
-  std::optional<SlowCycle> behind_;  ///< the worst behind what is pending, seen before its turn
+  std::optional<SlowCycle>
+      worst_later_;  ///< the worst behind what is pending, seen before its turn
   struct Written {
     std::int64_t end_ns = 0, severity_ns = 0;
   };

@@ -104,7 +104,7 @@ TEST(Mutation, GivesSoundBlocksOrARefusalWithItsPlace) {
         break;
       }
       const ClBlock& b = **block;
-      ASSERT_FALSE(ended) << "a block behind the end";
+      ASSERT_FALSE(ended) << "a block after the end";
       ASSERT_EQ(b.sequence, sequence++);
       ASSERT_GE(b.line, 1U);
       ended = b.kind == BlockKind::kEnd;

@@ -36,7 +36,7 @@ struct Machine {
   bool is_dry_run = false;   ///< drives stay off
   bool is_position_known = false;  ///< ghost: where the joints are was taken from the drives
   int word = kNoWord;      ///< verb that waits for its turn behind others; of these one at a time
-  bool is_passed = false;  ///< a stop was said behind it, and came first
+  bool is_passed = false;  ///< a stop was said after it, and came first
   std::string wrong{};
 
   bool operator==(const Machine&) const = default;

@@ -156,7 +156,7 @@ TEST(SingleBlock, MayBeAbortedAndMayFaultWhileItBrakesForAnEndThatAnAbortNeverPa
       test::expect_within_limits(run.world, first, !is_abort, is_abort ? worst : worst_fault);
     }
     EXPECT_FALSE(run.world.state.single_block.is_braking());
-    EXPECT_FALSE(run.world.state.single_block.is_behind());
+    EXPECT_FALSE(run.world.state.single_block.is_resting());
     EXPECT_TRUE(run.world.state.single_block.is_on) << "the operator said nothing else";
   }
   std::printf("%d stops; abort: worst v %.6f a %.6f j %.6f; FaultStop: v %.6f a %.6f j %.6f\n",

@@ -92,16 +92,16 @@ TEST(SingleBlock, LeavesNoEndOutBehindAHold) {
     ASSERT_TRUE(run.is_started());
     double hold_s = random.log_uniform(0.01, 1);
     std::optional<std::uint64_t> expected, braked;
-    std::uint64_t behind = 1;
+    std::uint64_t after = 1;
     for (double t = 0, run_s = 0; t < kMaxSeconds && !run.is_over(); t += run.world.dt()) {
       const State state = run.world.now();
       if (state == State::kStepping) {
         const std::uint64_t block = run.world.records.back().sequence;
         EXPECT_EQ(block, expected.value_or(block));
-        behind = block + 1;
+        after = block + 1;
       }
       if (state == State::kStepping || state == State::kHeld) {
-        expected = next_end(run, behind);
+        expected = next_end(run, after);
         if (state == State::kHeld && braked) {
           EXPECT_EQ(*braked, expected.value_or(0)) << "the hold passed it";
           ++holds_while_braking;
@@ -128,7 +128,7 @@ TEST(SingleBlock, LeavesNoEndOutBehindAHold) {
 }
 
 /// On and off, holds and overrides at any instant: where it rests it rests at the same places as
-/// ever, and behind every rest at the very next end, as long as it is on.
+/// ever, and after every rest at the very next end, as long as it is on.
 TEST(SingleBlock, RestsExactlyAtEndsWhateverTheOperatorDoes) {
   LimitShares worst;
   int rests_made = 0, ons = 0;
@@ -143,7 +143,7 @@ TEST(SingleBlock, RestsExactlyAtEndsWhateverTheOperatorDoes) {
     Stepped run(job);
     ASSERT_TRUE(run.is_started());
     bool is_on = true, was_rested_on = true;
-    std::uint64_t behind = 1;
+    std::uint64_t after = 1;
     std::optional<std::uint64_t> expected;
     double next = 0;
     for (double t = 0; t < kMaxSeconds && !run.is_over(); t += run.world.dt()) {
@@ -153,13 +153,13 @@ TEST(SingleBlock, RestsExactlyAtEndsWhateverTheOperatorDoes) {
         ASSERT_TRUE(rests.contains(record.sequence)) << record.sequence;
         expect_same_position(record.joints, rests[record.sequence], record.sequence);
         EXPECT_EQ(record.sequence, was_rested_on && expected ? *expected : record.sequence);
-        EXPECT_GE(record.sequence, behind);
-        behind = record.sequence + 1;
+        EXPECT_GE(record.sequence, after);
+        after = record.sequence + 1;
         ++rests_made;
       }
       if (state == State::kStepping || state == State::kHeld) {
         was_rested_on = is_on;
-        expected = next_end(run, behind);
+        expected = next_end(run, after);
         run.command(Verb::kResume);
       } else if (t < next) {
         run.run();
@@ -202,12 +202,12 @@ TEST(SingleBlock, LeavesNoEndOutWhereBlocksComeTooLate) {
     run.max_blocks = 1;
     std::vector<std::uint64_t> order;
     for (double t = 0; t < kMaxSeconds && !run.is_over(); t += run.world.dt()) {
-      const bool is_behind = run.world.now() == State::kStepping;
+      const bool is_resting = run.world.now() == State::kStepping;
       const std::uint64_t block = run.world.records.back().sequence;
-      if (is_behind && (order.empty() || order.back() != block)) order.push_back(block);
+      if (is_resting && (order.empty() || order.back() != block)) order.push_back(block);
       if (random.chance(chance)) {
         run.run();
-      } else if (is_behind) {
+      } else if (is_resting) {
         run.world.command(Verb::kResume);
       } else {
         run.run_unplanned();

@@ -72,7 +72,7 @@ struct Job {
 /// Where the machine rested, by block.
 using Rests = std::map<std::uint64_t, JointVector>;
 
-/// Rests behind every block of the program; blocks in the order of their rests.
+/// Rests after every block of the program; blocks in the order of their rests.
 inline std::vector<std::uint64_t> step_through(Stepped& run, Rests& rests, int says_again = 0) {
   std::vector<std::uint64_t> order;
   int n = 0;
@@ -103,7 +103,7 @@ inline void expect_same_position(const JointVector& a, const JointVector& b, std
 }
 
 /// The next end of a block ahead of a machine in mid-motion; its own walk over the port.
-inline std::optional<std::uint64_t> next_end(Stepped& run, std::uint64_t behind) {
+inline std::optional<std::uint64_t> next_end(Stepped& run, std::uint64_t after) {
   CycleWorld& world = run.world;
   if (world.reader.path() == nullptr) return std::nullopt;
   for (std::size_t i = 0;; ++i) {
@@ -112,7 +112,7 @@ inline std::optional<std::uint64_t> next_end(Stepped& run, std::uint64_t behind)
     for (std::uint32_t k = 0; k < path->marks.count; ++k) {
       const BlockMark& mark = path->marks.at[k];
       if (i == 0 && mark.s < world.state.on_path.s - 1e-9) continue;
-      if (path->sequence + mark.ahead >= behind) return path->sequence + mark.ahead;
+      if (path->sequence + mark.ahead >= after) return path->sequence + mark.ahead;
     }
   }
 }

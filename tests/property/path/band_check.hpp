@@ -128,9 +128,9 @@ class ProgrammedPath {
 
 /// The pose of `run` at `u`.
 inline ToolPose pose_at_u(const BandRun& run, double u) {
-  const auto behind = std::upper_bound(run.spans.begin(), run.spans.end(), u,
-                                       [](double x, const BandSpan& s) { return x < s.u0; });
-  const BandSpan& span = behind == run.spans.begin() ? *behind : *(behind - 1);
+  const auto after = std::upper_bound(run.spans.begin(), run.spans.end(), u,
+                                      [](double x, const BandSpan& s) { return x < s.u0; });
+  const BandSpan& span = after == run.spans.begin() ? *after : *(after - 1);
   return pose_on(span.c, u - span.u0);
 }
 

@@ -43,7 +43,7 @@ void Protocol::push(const Accepted& accepted, std::uint64_t session) {
   }
   for (std::size_t i = 0; i < accepted.count; ++i) {
     const ClBlock& block = accepted.blocks[i];
-    if (has_end_) wrong_ = "a block behind the end";
+    if (has_end_) wrong_ = "a block after the end";
     if (block.sequence != pushed_) wrong_ = "a block is missing or comes twice";
     has_end_ = block.kind == BlockKind::kEnd;
     if (has_end_ && pushed_ != bounds_.blocks) wrong_ = "the program ends too soon";

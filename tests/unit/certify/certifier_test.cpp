@@ -48,7 +48,7 @@ TEST(Certifier, GivesACertificateForAWholeProgramInBothTransitions) {
   }
 }
 
-/// Two lines of 10 mm at 50 mm/s, one behind the other.
+/// Two lines of 10 mm at 50 mm/s, one after the other.
 struct TwoLines {
   std::vector<PathPiece> paths = std::vector<PathPiece>(2);
   std::vector<TimePiece> times = std::vector<TimePiece>(2);

@@ -90,7 +90,7 @@ TEST(MissingAxis, IsRefusedWithTheRemedyWhereTheDialectIsNotCertain) {
   for (const char* head : {"", "$$     CATIA APT VERSION 1.0\n", "$$ Mastercam\n",
                            "PPRINT/APTCL-SPEC,MAKINO-FF,1\n", "UNIT/MM\n"}) {
     const auto read = read_body(std::string(head) + kMixed);
-    EXPECT_NE(read.error.find("a point without a tool axis behind a tilted one"), std::string::npos)
+    EXPECT_NE(read.error.find("a point without a tool axis after a tilted one"), std::string::npos)
         << head;
     EXPECT_NE(read.error.find("--dialect nx"), std::string::npos) << read.error;
     EXPECT_EQ(read.motion().size(), 1U) << head;

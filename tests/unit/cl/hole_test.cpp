@@ -133,7 +133,7 @@ TEST(Cycle, ChipBreakOfCreoComesOutBehindSoManyPecks) {
                  {'F', {10, 0, -5}, 100},
                  {'R', {10, 0, -4}},
                  {'F', {10, 0, -10}, 100},
-                 {'R', {10, 0, 3}},  // out behind the second
+                 {'R', {10, 0, 3}},  // out after the second
                  {'R', {10, 0, -9}},
                  {'F', {10, 0, -15}, 100},
                  {'R', {10, 0, -14}},

@@ -75,7 +75,7 @@ TEST(Modes, OfTheFramesKnowWhatChangedSinceTheLastMotion) {
   EXPECT_EQ(news_of("rccr"), "--");
   EXPECT_EQ(news_of("rwcr"), "--");
   EXPECT_EQ(news_of("rcwr"), "--");
-  EXPECT_EQ(news_of("rcrwr"), "--n") << "COPY is forgotten with the motion behind it";
+  EXPECT_EQ(news_of("rcrwr"), "--n") << "COPY is forgotten with the motion after it";
 }
 
 }  // namespace

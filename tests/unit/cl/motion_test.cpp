@@ -117,7 +117,7 @@ TEST(Reader, TakesFromBehindMotionForARapidAlone) {
   const auto read = read_body("GOTO/0,0,0\nFROM/50,0,0\nRAPID\nGOTO/60,0,0\nGOTO/70,0,0\n");
   EXPECT_EQ(read.error, "");
   EXPECT_EQ(read.motion().size(), 3U);
-  EXPECT_TRUE(read.warned_of("FROM behind motion"));
+  EXPECT_TRUE(read.warned_of("FROM after motion"));
   for (const char* next :
        {"GOTO/60,0,0\n", "GODLTA/10,0,0\n", "CIRCLE/40,0,0,0,0,1\nGOTO/40,10,0\n"}) {
     const auto cut = read_body("GOTO/0,0,0\nFROM/50,0,0\n" + std::string(next));

@@ -195,14 +195,14 @@ TEST(End, RefusesEveryOtherBlockBehindIt) {
     const auto read =
         read_text("FEDRAT/9\nGOTO/1,2,3\nEND\n" + std::string(line) + "\nFINI\n", metric());
     EXPECT_EQ(read.error_line, 4U) << line;
-    EXPECT_NE(read.error.find("behind the end of the program"), std::string::npos) << read.error;
+    EXPECT_NE(read.error.find("after the end of the program"), std::string::npos) << read.error;
     EXPECT_EQ(read.blocks.size(), 1U) << line;
   }
 }
 
 TEST(Refusal, OfMotionBehindTheEnd) {
   EXPECT_NE(read_text("FEDRAT/9\nGOTO/1,2,3\nEND\nGOTO/1,2,4\nFINI\n", metric())
-                .error.find("behind the end"),
+                .error.find("after the end"),
             std::string::npos);
 }
 

@@ -125,7 +125,7 @@ TEST(Reader, RestsBehindEveryCutBetweenTransitionWords) {
     kinds += b.kind == BlockKind::kCut ? 'c' : b.kind == BlockKind::kRapid ? 'r' : '.';
     EXPECT_TRUE(b.kind != BlockKind::kDwell || b.value == 0);
   }
-  EXPECT_EQ(kinds, "cc.rc.c.") << "a rest behind each cut, and the end";
+  EXPECT_EQ(kinds, "cc.rc.c.") << "a rest after each cut, and the end";
 }
 
 TEST(Reader, RestsAtTheEndOfASplineAndNotAtItsChords) {

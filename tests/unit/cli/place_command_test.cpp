@@ -19,7 +19,7 @@ const std::string kBlossom = MERIDIAN_SOURCE_DIR
     "/deploy/parts/blossom.apt --tools " MERIDIAN_SOURCE_DIR "/deploy/tools.toml";
 
 /// The number behind `words`.
-double number_behind(const std::string& words, const std::string& text) {
+double number_after(const std::string& words, const std::string& text) {
   const std::size_t at = text.find(words);
   EXPECT_NE(at, std::string::npos) << text;
   return at == std::string::npos ? -1 : std::stod(text.substr(at + words.size()));
@@ -29,8 +29,8 @@ TEST(PlaceCommand, FastestPrintsTheTimesThatBothFramesWereSimulatedWith) {
   const CommandOutput found = run_tool("machine " + kTrunnion + " --place " + kBlossom +
                                        " --fastest --box 100,300,100,300,50,150");
   ASSERT_EQ(found.exit_code, 0) << found.output;
-  const double quick_s = number_behind("time ", found.output);
-  const double widest_s = number_behind("largest margin ", found.output);
+  const double quick_s = number_after("time ", found.output);
+  const double widest_s = number_after("largest margin ", found.output);
   EXPECT_GT(quick_s, 1);
   EXPECT_LE(quick_s, widest_s);
   const std::size_t at = found.output.find("--frame ");
@@ -39,7 +39,7 @@ TEST(PlaceCommand, FastestPrintsTheTimesThatBothFramesWereSimulatedWith) {
   const CommandOutput run =
       run_tool("simulate " + kBlossom + " --machine " + kTrunnion + " --frame=" + frame);
   EXPECT_EQ(run.exit_code, 0) << run.output;
-  EXPECT_NEAR(number_behind("time ", run.output), quick_s, 0.06) << run.output;
+  EXPECT_NEAR(number_after("time ", run.output), quick_s, 0.06) << run.output;
 }
 
 TEST(PlaceCommand, FastestWantsAFileThatCanBeReadTwice) {

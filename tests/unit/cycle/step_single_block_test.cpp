@@ -7,7 +7,7 @@
 
 #include "unit/cycle/program.hpp"
 
-/// Single block where the plan rests by itself: behind cuts, dwells and actions.
+/// Single block where the plan rests by itself: after cuts, dwells and actions.
 namespace meridian::test::step_single_block {
 namespace {
 
@@ -41,7 +41,7 @@ struct Braking : test::Program {
     while (!world.state.single_block.is_braking()) world.run();
   }
   /// Held after so many cycles more, and sent on: whether it rests at the end all the same.
-  [[nodiscard]] bool rests_there_behind_hold(int cycles) {
+  [[nodiscard]] bool rests_there_after_hold(int cycles) {
     for (int n = 0; n < cycles; ++n) world.run();
     if (world.now() != State::kRunning) return true;  // it rests already
     world.command(Verb::kHold);
@@ -224,7 +224,7 @@ TEST(StepSingleBlock, RestsInATailThatItBrakesForWhateverIsPublishedMeanwhile) {
 TEST(StepSingleBlock, LeavesNoEndOutBehindAHoldThatGoesAlongThePlan) {
   int left_out = 0;
   for (int cycles = 0; cycles < 1110; cycles += 7) {
-    left_out += !Braking(0.01 * cycles, 0).rests_there_behind_hold(cycles);
+    left_out += !Braking(0.01 * cycles, 0).rests_there_after_hold(cycles);
   }
   EXPECT_EQ(left_out, 0);
 }
@@ -243,7 +243,7 @@ TEST(StepSingleBlock, LeavesNoEndOutBehindAHoldWhoseLawWouldEndJustBehindIt) {
     (beyond > 0 ? longer : shorter) = share;
   }
   ASSERT_TRUE(beyond > 1e-7 && beyond < 4e-7) << beyond;
-  EXPECT_TRUE(Braking(0, longer).rests_there_behind_hold(kCycles));
+  EXPECT_TRUE(Braking(0, longer).rests_there_after_hold(kCycles));
 }
 
 TEST(StepSingleBlock, MayBeAbortedAndSwitchedOffBehindABlock) {

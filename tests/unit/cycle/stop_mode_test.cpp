@@ -63,13 +63,13 @@ TEST(StopModes, AStopThatIsOverIsAsNew) {
 
 TEST(SingleBlockPhases, AnotherStopEndsABrakeAndNoRest) {
   using Phase = SingleBlock::Phase;
-  for (const auto& [before, behind] :
+  for (const auto& [before, after] :
        {std::pair{Phase::kRunning, Phase::kRunning}, std::pair{Phase::kBraking, Phase::kRunning},
         std::pair{Phase::kResting, Phase::kResting}}) {
     SingleBlock single;
     single.phase = before;
     single.leave_brake();
-    EXPECT_EQ(single.phase, behind);
+    EXPECT_EQ(single.phase, after);
   }
 }
 

@@ -111,7 +111,7 @@ TEST_P(OvertakenBy, AStopIsWhatWasSaidBefore) {
   EXPECT_FALSE(is_on_path(world.now())) << name_of(world.now());
   machine.say(GetParam().first);
   machine.run(1);
-  EXPECT_EQ(machine.count_overtaken(), 1U) << "what is said behind the stop has its turn";
+  EXPECT_EQ(machine.count_overtaken(), 1U) << "what is said after the stop has its turn";
 }
 
 INSTANTIATE_TEST_SUITE_P(CommandPort, OvertakenBy,
@@ -159,7 +159,7 @@ TEST(CommandPort, NeverShowsAWordAheadOfTheStopThatCameWithIt) {
       port->publish();
     }
   });
-  std::uint64_t stopped = 0, ahead = 0, looks = 0;
+  std::uint64_t stopped = 0, overtaking = 0, looks = 0;
   Command command;
   while (started.load(std::memory_order_relaxed) < kBursts) {
     if (!port->try_pop(command)) {
@@ -168,11 +168,11 @@ TEST(CommandPort, NeverShowsAWordAheadOfTheStopThatCameWithIt) {
     }
     if (command.verb == Verb::kAbort) stopped = command.request;
     if (command.verb != Verb::kStart) continue;
-    ahead += command.request > stopped ? 1 : 0;
+    overtaking += command.request > stopped ? 1 : 0;
     started.fetch_add(1, std::memory_order_relaxed);
   }
   commands.join();
-  EXPECT_EQ(ahead, 0U);
+  EXPECT_EQ(overtaking, 0U);
 }
 
 }  // namespace

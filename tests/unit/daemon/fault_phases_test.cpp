@@ -23,7 +23,7 @@ constexpr std::array<const char*, 20> kFaults{
     "emergency",    "unreferenced:b4", "deaf=3",      "deaf=100",  "late=20",
     "untold",       "stale=10",        "stale=100",   "doubled",   "swapped"};
 
-/// What comes of `fault` in `phase`: the letter of the alarm behind a FaultStop, or a dot.
+/// What comes of `fault` in `phase`: the letter of the alarm after a FaultStop, or a dot.
 std::string outcome(const Phase& phase, const char* fault) {
   SCOPED_TRACE(testing::Message() << fault << " in " << phase.name);
   const drives::HomingPlan homing{.is_referenced = !phase.is_unreferenced};

@@ -156,7 +156,7 @@ inline const std::array<Phase, 26> kMachinePhases{{
        plant.say(Verb::kHold);
        EXPECT_TRUE(plant.until(State::kHeld, 1));
      }},
-    {"Probing, behind its contact", TipAt::kOnLine,
+    {"Probing, after its contact", TipAt::kOnLine,
      [](Rehearsal& plant) {
        probe_and_run(plant);
        plant.probe = ProbeInput::kContact;

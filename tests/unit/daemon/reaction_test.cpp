@@ -129,7 +129,7 @@ TEST(Reaction, OfAStationThatSendsNothingMoreIsStarvingWithTheFirstDeceleratingS
     auto plant = std::make_unique<Rehearsal>();
     ASSERT_TRUE(plant->enable());
     plant->plan.cut_with_tail({200, 0, 0}, kRehearsalLimits, cruise);
-    plant->run(0.12);  // behind the acceleration, which takes 0.117 s
+    plant->run(0.12);  // after the acceleration, which takes 0.117 s
     const auto speed = [&] { return plant->world.state.on_path.ds; };
     double last = speed();
     for (int k = 0; k < 1000 && speed() >= last - 1e-9; ++k) {

@@ -201,9 +201,9 @@ TEST_F(SupervisorSetUp, AreAskedForOnceMoreWhereTheCyclesAnswerWasLost) {
   say(FrameWord::kSet, 3, 12);
   ASSERT_TRUE(write_and_take());
   ask(Verb::kSingleBlock, 1);
-  const auto behind = take(Verb::kSingleBlock);
-  ASSERT_TRUE(behind);
-  report(EventCode::kAccepted, behind->request, Verb::kSingleBlock);
+  const auto after = take(Verb::kSingleBlock);
+  ASSERT_TRUE(after);
+  report(EventCode::kAccepted, after->request, Verb::kSingleBlock);
   const auto again = take(Verb::kFrame);
   ASSERT_TRUE(again);
   report_accepted(*again);

@@ -61,7 +61,7 @@ class TracerTest : public testing::Test {
     SpanWriter(&rings_->publisher).write(Doing::kWrite, done_ns, done_ns + 20 * kUs, cycle_);
     now_ns_ += kMs + (late_ns / kMs) * kMs;
   }
-  /// So many good cycles, with a look of the tracer behind every tenth.
+  /// So many good cycles, with a look of the tracer after every tenth.
   void run(Tracer& tracer, int cycles) {
     for (int i = 0; i < cycles; ++i) {
       cycle();
@@ -112,7 +112,7 @@ TEST_F(TracerTest, ShowsWhatWasAroundALateCycle) {
   const std::uint64_t late = cycle_ + 1;
   cycle(7 * kMs + 300 * kUs);
   run(*tracer, 20);
-  EXPECT_TRUE(files().empty()) << "what comes behind it is not there yet";
+  EXPECT_TRUE(files().empty()) << "what comes after it is not there yet";
   run(*tracer, 50);
   ASSERT_EQ(files().size(), 1U);
   const std::string text = text_of(files()[0]);

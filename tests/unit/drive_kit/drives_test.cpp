@@ -197,18 +197,18 @@ TEST_F(Library, RunLeavesTheThreadInTheClassThatItHad) {
   sched_param before{.sched_priority = 1};
   if (::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &before) != 0)
     GTEST_SKIP() << "no right to the real-time class here";
-  sched_param within{}, behind{};
+  sched_param within{}, after{};
   int policy = SCHED_OTHER;
   drives_->run([&] {
     ::pthread_getschedparam(::pthread_self(), &policy, &within);
     return true;
   });
-  ::pthread_getschedparam(::pthread_self(), &policy, &behind);
+  ::pthread_getschedparam(::pthread_self(), &policy, &after);
   const sched_param normal{};
   ::pthread_setschedparam(::pthread_self(), SCHED_OTHER, &normal);
   EXPECT_EQ(within.sched_priority, 2);
   EXPECT_EQ(policy, SCHED_FIFO);
-  EXPECT_EQ(behind.sched_priority, 1);
+  EXPECT_EQ(after.sched_priority, 1);
 }
 
 }  // namespace

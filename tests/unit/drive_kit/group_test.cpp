@@ -164,17 +164,17 @@ TEST_F(PartOfAMachine, ASetpointIsTakenOnceInOrderInTimeAndFromTheMasterAlone) {
 
 TEST_F(PartOfAMachine, TheTimeBetweenTwoPositionsIsThatOfTheServicesCycles) {
   enable();
-  const auto elapsed_behind = [this](int setpoints) {
+  const auto elapsed_after = [this](int setpoints) {
     for (int n = 0; n < setpoints; ++n) (void)send(0.01);
     group_.work(1, motors_);
     return motors_.outputs[0].elapsed_s;
   };
-  (void)elapsed_behind(1);
-  EXPECT_NEAR(elapsed_behind(1), 1e-3, 1e-12);
-  EXPECT_NEAR(elapsed_behind(2), 2e-3, 1e-12) << "two at once";
-  EXPECT_NEAR(elapsed_behind(0), 1e-3, 1e-12) << "none: the bridge leads on";
-  EXPECT_NEAR(elapsed_behind(1), 0, 1e-12) << "the bridge was there already";
-  EXPECT_NEAR(elapsed_behind(1), 1e-3, 1e-12);
+  (void)elapsed_after(1);
+  EXPECT_NEAR(elapsed_after(1), 1e-3, 1e-12);
+  EXPECT_NEAR(elapsed_after(2), 2e-3, 1e-12) << "two at once";
+  EXPECT_NEAR(elapsed_after(0), 1e-3, 1e-12) << "none: the bridge leads on";
+  EXPECT_NEAR(elapsed_after(1), 0, 1e-12) << "the bridge was there already";
+  EXPECT_NEAR(elapsed_after(1), 1e-3, 1e-12);
 }
 
 TEST_F(PartOfAMachine, LostPeriodsOfItsOwnAreOneExchange) {

@@ -158,7 +158,7 @@ TEST_F(Follow, SetpointsThatStayAwayRampDownAndStayOffUntilTheProcessSaysOff) {
   EXPECT_EQ(follow_.phase[0], MERIDIAN_HAL_FOLLOWS);
 }
 
-/// Times of HAL's calls behind a stall that ends at `end`: it makes up for what it missed at once.
+/// Times of HAL's calls after a stall that ends at `end`: it makes up for what it missed at once.
 std::vector<std::int64_t> calls_after_stall(int missed, int end, int ordinary) {
   std::vector<std::int64_t> times;
   for (int i = 0; i <= missed; ++i) times.push_back(end * kPeriod_ns + i * 1'000);

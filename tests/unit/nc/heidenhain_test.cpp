@@ -226,7 +226,7 @@ TEST(Klartext, SkipsLabelsAndTakesBlockDeleteBeforeTheNumber) {
       read_klartext("2 LBL 1\n3 L X+0 Y+0 Z+0 R0 FMAX\n/4 L X+9 FMAX\n5 LBL 0\n/6 M30\n");
   ASSERT_EQ(read.error, "");
   EXPECT_EQ(read.motion().size(), 2U);
-  EXPECT_TRUE(read.warned_of("blocks behind / are run"));
+  EXPECT_TRUE(read.warned_of("blocks after / are run"));
 }
 
 TEST(Klartext, SaysOfACycleOfTheControlNoMoreThanItsName) {

@@ -54,13 +54,13 @@ TEST(NcLine, RefusesWhatOnlyAControlCanRun) {
   EXPECT_EQ(words_of("GOTO 20"), "refused: the word GOTO of macros and jumps is not run here");
   EXPECT_EQ(words_of("O<drill> CALL"),
             "refused: a name in < >: a subprogram or a variable of LinuxCNC");
-  EXPECT_EQ(words_of("G1 X1. ,R2."), "refused: a word behind a comma (chamfer or rounding)");
+  EXPECT_EQ(words_of("G1 X1. ,R2."), "refused: a word after a comma (chamfer or rounding)");
 }
 
 TEST(NcLine, RefusesWhatIsNoWord) {
-  EXPECT_EQ(words_of("G1 X"), "refused: address X without a number behind it");
+  EXPECT_EQ(words_of("G1 X"), "refused: address X without a number after it");
   EXPECT_EQ(words_of("G1 X1. X2."), "refused: address X twice in one block");
-  EXPECT_EQ(words_of("G1 X1.2.3"), "refused: address X without a number behind it");
+  EXPECT_EQ(words_of("G1 X1.2.3"), "refused: address X without a number after it");
   EXPECT_EQ(words_of("G1 (open"), "refused: a comment without its closing bracket");
   EXPECT_EQ(words_of("G1 $"), "refused: what begins with '$' is no NC word with a number");
 }

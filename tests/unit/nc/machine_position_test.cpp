@@ -92,7 +92,7 @@ TEST(NcMachinePositions, RapidsThatTurnWithoutToolCentreControlAreSaid) {
       read_nc("G0 A0. C0.\nG43.4 H1\nG0 X1. Y2. Z5.\nG49\nG0 A30.\nG43.4 H1\nG0 X1. Y2. Z9.\n",
               on(shipped("trunnion-ac")));
   ASSERT_EQ(read.error, "");
-  EXPECT_TRUE(read.warned_of("rapids behind which the tip is not known"));
+  EXPECT_TRUE(read.warned_of("rapids after which the tip is not known"));
   EXPECT_EQ(read.motion().size(), 2U);
 }
 

@@ -96,9 +96,9 @@ TEST(WorkOffsets, BehindMotionWithoutOneAreG54OrRefused) {
   const ReadText read = read_nc(head + "G54\nX1.\n");
   ASSERT_EQ(read.error, "");
   EXPECT_TRUE(read.warned_of("taken to lie in G54 too"));
-  EXPECT_NE(read_nc(head + "G55\nX1.\n").error.find("behind motion without a work offset"),
+  EXPECT_NE(read_nc(head + "G55\nX1.\n").error.find("after motion without a work offset"),
             std::string::npos);
-  EXPECT_NE(read_siemens("G0 X0 Y0 Z9\nG54\nX1\n").error.find("behind motion without"),
+  EXPECT_NE(read_siemens("G0 X0 Y0 Z9\nG54\nX1\n").error.find("after motion without"),
             std::string::npos);
 }
 

@@ -65,7 +65,7 @@ inline constexpr double kTiny = 1e-9;  ///< mm, or of a unit vector
       "0 BEGIN PGM PART MM\n1 ; NOTE\n" + std::string(body) + "9 END PGM PART MM\n", options);
 }
 
-/// Z and kind, "r" rapid or "f" feed, of every motion block behind the first.
+/// Z and kind, "r" rapid or "f" feed, of every motion block after the first.
 [[nodiscard]] inline std::string levels_of(const ReadText& read) {
   std::string out;
   const auto motion = read.motion();

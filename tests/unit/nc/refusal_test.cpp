@@ -12,7 +12,7 @@ struct Case {
   const char* says;
 };
 
-/// `body` is refused in line 5, behind a first point in line 4.
+/// `body` is refused in line 5, after a first point in line 4.
 void expect_refused(const Case& c) {
   const ReadText read = read_nc("G0 X0. Y0. Z0.\n" + std::string(c.line) + "\n");
   EXPECT_EQ(read.error_line, 5U) << c.line << ": " << read.error;
@@ -62,7 +62,7 @@ TEST(NcRefusal, NamesWhatTheControlKeepsForItself) {
     expect_refused(c);
   }
   const ReadText read = read_nc("G54\nG0 X0. Y0. Z0.\nG55\nX1.\n");
-  EXPECT_NE(read.error.find("a second work offset (G55 behind G54)"), std::string::npos);
+  EXPECT_NE(read.error.find("a second work offset (G55 after G54)"), std::string::npos);
 }
 
 TEST(NcRefusal, NamesWhatIsWrongWithAMotion) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CYCLE81 and its kin, alone and behind MCALL, against levels worked out by hand.
+// CYCLE81 and its kin, alone and after MCALL, against levels worked out by hand.
 #include <gtest/gtest.h>
 
 #include <algorithm>

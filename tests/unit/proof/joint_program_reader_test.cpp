@@ -52,7 +52,7 @@ TEST(JointProgramReader, WhatItDoesNotKnowIsRefusedWithItsLine) {
   EXPECT_EQ(error("#1=5\nM30\n"), "5: no row of words: #1=5");
   EXPECT_EQ(error("(open\nM30\n"), "5: a bracket is not closed");
   EXPECT_EQ(error("G0 X1\n"), "5: the program has no end (M2 or M30)");
-  EXPECT_EQ(error("M30\nG0 X1\n"), "6: the program goes on behind its end");
+  EXPECT_EQ(error("M30\nG0 X1\n"), "6: the program goes on after its end");
   EXPECT_EQ(error("G28 Z0\nG0 X1\nM30\n"), "");
 }
 

@@ -179,7 +179,7 @@ TEST(ProgramCheck, CutsBehindTheEndFail) {
   text.insert(text.find("G94\nM5"), "G1 X0. F5.\n");
   const auto report = checked(text, kPart, model);
   ASSERT_FALSE(report.passed());
-  EXPECT_EQ(report.findings[0].text, "cuts behind the last CL point");
+  EXPECT_EQ(report.findings[0].text, "cuts after the last CL point");
 }
 
 TEST(ProgramCheck, TheDeviationIsTheOneWorkedOutByHand) {

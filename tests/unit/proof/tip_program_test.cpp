@@ -67,7 +67,7 @@ TEST_P(TipProgramCheck, PassesAsItWasPosted) {
   EXPECT_EQ(report.motions, 5U);
 }
 
-/// One digit of the first number behind the last `address` of the program.
+/// One digit of the first number after the last `address` of the program.
 std::string with_a_wrong_digit(std::string program, const std::string& address) {
   const std::size_t at = program.rfind(address);
   const std::size_t digit = program.find_first_of("0123456789", at + address.size());

@@ -170,7 +170,7 @@ TEST_F(Intake, AQueueWithoutRoomEndsTheSessionInsteadOfLosingBlocksInSilence) {
   EXPECT_EQ(answer.credits, 0u);
   EXPECT_NE(answer.text.find("the block queue is full"), std::string::npos) << answer.text;
   static_cast<void>(send(good_batch(kSession, 8, 8)));
-  EXPECT_EQ(accepted_.count, 0u) << "nothing behind the loss may run";
+  EXPECT_EQ(accepted_.count, 0u) << "nothing after the loss may run";
 }
 
 TEST_F(Intake, CreditsNeverGoBack) {

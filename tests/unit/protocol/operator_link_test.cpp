@@ -117,7 +117,7 @@ TEST_F(OperatorWhoMeansADryRun, QuotesInARepetitionWhatHeSawWhenHeSaidIt) {
     const auto second = next_sent();
     ASSERT_TRUE(first && second) << "it is repeated after 300 ms";
     EXPECT_EQ(first->status_seen, 1U);
-    EXPECT_EQ(second->status_seen, 1U) << "a stop may have been said behind it";
+    EXPECT_EQ(second->status_seen, 1U) << "a stop may have been said after it";
     answer(*second);
   });
   EXPECT_TRUE(link_.ask(Verb::kResume, 0, kPatience));

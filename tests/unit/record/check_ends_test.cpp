@@ -42,7 +42,7 @@ TEST_F(Check, LeavesALaterProgramAlone) {
   EXPECT_TRUE(report.has_later_program);
 }
 
-/// Drives were moved while they were off, behind a program: rows at rest go on with its kind.
+/// Drives were moved while they were off, after a program: rows at rest go on with its kind.
 TEST_F(Check, TakesTheJointsOfDrivesThatAreSwitchedOnElsewhereForNoMotion) {
   std::vector<CycleRecord> all =
       SampleRun(model, {cut_to(1, {80, -40, 60}, 0.3, 200), blocks[0]}).records;

@@ -289,7 +289,7 @@ TEST_F(Check, RefusesAnEmptyRecording) {
 /// ones with a longer one.
 class CheckToolChange : public Check {
  protected:
-  CheckReport run_with_change_behind(int with_first) {
+  CheckReport run_with_change_after(int with_first) {
     MachineModel other = model;
     std::vector<ClBlock> first(blocks.begin(), blocks.begin() + with_first);
     std::vector<ClBlock> second(blocks.begin() + 4, blocks.end());
@@ -320,13 +320,13 @@ class CheckToolChange : public Check {
 };
 
 TEST_F(CheckToolChange, IsFollowedInMidPath) {
-  const CheckReport report = run_with_change_behind(2);
+  const CheckReport report = run_with_change_after(2);
   EXPECT_TRUE(report.passed()) << to_text(report);
   EXPECT_EQ(report.vertices, 5U);
 }
 
 TEST_F(CheckToolChange, IsFollowedWhereThePathBeginsWithItAsFromItsLineOn) {
-  const CheckReport report = run_with_change_behind(1);
+  const CheckReport report = run_with_change_after(1);
   EXPECT_TRUE(report.passed()) << to_text(report);
   EXPECT_EQ(report.vertices, 4U);
 }

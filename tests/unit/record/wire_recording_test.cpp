@@ -55,7 +55,7 @@ TEST(WireBook, CountsGapsDoublesAndRestarts) {
   EXPECT_EQ(book.restarts(), 1U);
   const std::string text = book.to_text();
   EXPECT_NE(text.find("12 missing in 3 gaps (longest 9), 2 doubles"), std::string::npos) << text;
-  EXPECT_NE(text.find("2 missing behind cycle 5001"), std::string::npos) << text;
+  EXPECT_NE(text.find("2 missing after cycle 5001"), std::string::npos) << text;
   EXPECT_EQ(text.find("off the grid"), std::string::npos) << text;
 }
 

@@ -302,7 +302,7 @@ TEST_F(Simulate, GoesOnFromAProgramStopWhenTheOperatorOfTheEventsDid) {
   EXPECT_GT(run.report.program_s, at_once.report.program_s + 0.5);
   std::size_t slowed = 0;
   for (const CycleRecord& record : run.records) slowed += record.rate > 0.4 && record.rate < 0.6;
-  EXPECT_GT(slowed, 100U) << "the override meets the cut behind the stop";
+  EXPECT_GT(slowed, 100U) << "the override meets the cut after the stop";
 }
 
 TEST_F(Simulate, EndsWhereTheOperatorLeavesIt) {

@@ -144,8 +144,8 @@ TEST_P(SimulatedUnwinding, IsCheckedWhereRowsAreMissingAtItsEnds) {
   };
   auto records = run.records;
   const auto first = std::find_if(records.begin(), records.end(), is_unwinding);
-  const auto behind = std::find_if_not(first, records.end(), is_unwinding);
-  records.erase(behind - 1, behind + 1);
+  const auto after = std::find_if_not(first, records.end(), is_unwinding);
+  records.erase(after - 1, after + 1);
   records.erase(first - 1, first + 1);
   record::CheckOptions options;
   options.max_missing = 4;

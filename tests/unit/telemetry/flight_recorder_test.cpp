@@ -81,15 +81,15 @@ TEST_F(FlightFiles, NameTheAlarmAndHoldTheCyclesBeforeAndBehindIt) {
   auto reader = record::RecordingReader::open(file.string(), model_);
   ASSERT_TRUE(reader.has_value()) << reader.error().text();
   record::RecordingRow row;
-  int before = 0, behind = 0;
+  int before = 0, after = 0;
   while (*reader->next(row)) {
     EXPECT_EQ(row.feedback[0], static_cast<double>(row.cycle));
     EXPECT_EQ(row.alarm, row.cycle < 2001 ? Alarm::kNone : Alarm::kFollowingError);
-    ++(row.cycle < 2001 ? before : behind);
+    ++(row.cycle < 2001 ? before : after);
   }
-  EXPECT_EQ(before + behind, 1000);
+  EXPECT_EQ(before + after, 1000);
   EXPECT_GE(before, 475);
-  EXPECT_GE(behind, 500);
+  EXPECT_GE(after, 500);
   std::ifstream words(*files(".txt").begin());
   const std::string text{std::istreambuf_iterator<char>(words), {}};
   EXPECT_NE(text.find("lags by 2.5"), std::string::npos) << text;

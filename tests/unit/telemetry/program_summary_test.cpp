@@ -53,7 +53,7 @@ TEST(ProgramSummary, GivesEachPartItsTimeAndTheyAddUpToTheWhole) {
   w.move(State::kHolding, MotionKind::kCut, 20);
   w.run(State::kHeld, 302);
   w.record.rate = 0;
-  w.run(State::kRunning, 9);  // a dwell behind a hold
+  w.run(State::kRunning, 9);  // a dwell after a hold
   w.record.rate = 1;
   w.move(State::kRunning, MotionKind::kRapid, 403);
   w.move(State::kRunning, MotionKind::kPoleTurn, 30);
@@ -105,7 +105,7 @@ TEST(ProgramSummary, SaysInWhichBlockAProgramWasAbortedOrBehindWhich) {
     EXPECT_EQ(summary->whole, 300U) << "the next program begins anew";
     const bool is_done = rest != State::kHeld;
     EXPECT_EQ(describe(*summary, "a", kPeriod_s, 90),
-              is_done ? "program a was aborted behind block 3, line 13: 4 blocks in 0.3 s"
+              is_done ? "program a was aborted after block 3, line 13: 4 blocks in 0.3 s"
                       : "program a was aborted in block 3, line 13: 3 blocks in 0.3 s");
   }
 }

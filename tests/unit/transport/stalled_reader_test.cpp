@@ -75,21 +75,22 @@ class OtherProcess {
 
 /// Whether `process` is who has not acknowledged all.
 bool names(const Participant& participant, std::int32_t writer, const OtherProcess& process) {
-  const auto behind = find_unacknowledged(participant, writer);
+  const auto unacknowledged = find_unacknowledged(participant, writer);
   const std::string who = "process " + std::to_string(process.id()) + " ";
-  return behind && behind->who.find(who) != std::string::npos;
+  return unacknowledged && unacknowledged->who.find(who) != std::string::npos;
 }
 
 TEST(StallWatch, TakesReadersThatComeAndGoForNobodyWhoStalls) {
   StallWatch watch;
-  const auto behind = [](std::string who) { return Unacknowledged{7, 9, std::move(who)}; };
+  const auto unacknowledged = [](std::string who) { return Unacknowledged{7, 9, std::move(who)}; };
   for (int second = 0; second < 10; ++second) {
-    EXPECT_FALSE(watch.look(behind("process " + std::to_string(second)), second * kSecond_ns));
+    EXPECT_FALSE(
+        watch.look(unacknowledged("process " + std::to_string(second)), second * kSecond_ns));
   }
-  EXPECT_FALSE(watch.look(behind("process 9"), 10 * kSecond_ns)) << "1 s";
-  EXPECT_TRUE(watch.look(behind("process 9"), 11 * kSecond_ns)) << "2 s";
+  EXPECT_FALSE(watch.look(unacknowledged("process 9"), 10 * kSecond_ns)) << "1 s";
+  EXPECT_TRUE(watch.look(unacknowledged("process 9"), 11 * kSecond_ns)) << "2 s";
   EXPECT_FALSE(watch.look(std::nullopt, 12 * kSecond_ns));
-  EXPECT_FALSE(watch.look(behind("process 9"), 13 * kSecond_ns)) << "it had caught up";
+  EXPECT_FALSE(watch.look(unacknowledged("process 9"), 13 * kSecond_ns)) << "it had caught up";
 }
 
 TEST(StalledReaders, AreNamedWithTheirProcessAndHoldBackNoWrite) {

@@ -118,7 +118,7 @@ export class Display {
   heldBy(frame, wanted) {
     const words = {
       Off: "drives are off", Ready: "ready", Loaded: "program loaded: start when the approach is clear",
-      Held: "held: resume goes on", Stepping: "at rest behind a block: resume goes on", Holding: "braking for the hold", Starved: "waits for blocks",
+      Held: "held: resume goes on", Stepping: "at rest after a block: resume goes on", Holding: "braking for the hold", Starved: "waits for blocks",
       Starving: "blocks do not come fast enough", Fault: "fault: reset after the cause is gone", FaultStop: "stopping",
       Enabling: "drives are switched on", Jogging: "jogging", Homing: "homing", Approaching: "approaches the program",
     };

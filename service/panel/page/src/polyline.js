@@ -60,7 +60,7 @@ export class Polyline {
     this.rebuild();
   }
 
-  // One point more, behind the last. Only what is new goes to the graphics card.
+  // One point more, after the last. Only what is new goes to the graphics card.
   add(point, tint) {
     this.write(this.count, point, tint);
     this.index.array[this.drawn] = this.count;

@@ -196,7 +196,7 @@ export class Scope {
 
   // ---- drawing
 
-  // What is shown, s: the newest window; of a recording, or behind a zoom, what the plots show.
+  // What is shown, s: the newest window; of a recording, or after a zoom, what the plots show.
   range() {
     const { buffer } = this;
     if (this.zoom) return this.zoom;

@@ -13,7 +13,7 @@ export const kQuantities = {
   lateness: { label: "lateness, \u00b5s", perJoint: false, isRecorded: true },
 };
 
-// What is kept at least, s: the longest window, and half of it behind a trigger.
+// What is kept at least, s: the longest window, and half of it after a trigger.
 const kKept_s = 30;
 
 export class ScopeBuffer {
@@ -68,7 +68,7 @@ export class ScopeBuffer {
     return low;
   }
 
-  // Of joint `k` at sample `i`, as it is shown; null where it is not known: behind a gap there is no difference.
+  // Of joint `k` at sample `i`, as it is shown; null where it is not known: after a gap there is no difference.
   value(quantity, k, i) {
     const finite = (number) => (Number.isFinite(number) ? number : null);
     if (quantity === "feed" || quantity === "lateness") return finite(this[quantity][i]);

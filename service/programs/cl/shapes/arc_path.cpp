@@ -105,7 +105,7 @@ Outcome BlockPath::arc_to(const ArcPath& given, const Vector3& tip, const Vector
   check_arc_sense(arc.normal.cross(tip_ - arc.centre).normalized(), given.line);
 
   const double gap = (arc.end - tip).norm();
-  const double rest = !closed && gap > kMinMove_mm ? gap : 0;  // cut as a line behind the arc
+  const double rest = !closed && gap > kMinMove_mm ? gap : 0;  // cut as a line after the arc
   ClBlock b;
   b.line = line;
   b.kind = feed.kind;

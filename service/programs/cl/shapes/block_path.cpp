@@ -61,7 +61,7 @@ void BlockPath::set_from(const Vector3& tip, const Vector3& axis, std::uint32_t 
   if (is_there) return;
   if (has_moved()) {
     remarks_.warn("FROM", line, [] {
-      return "FROM behind motion: taken as the new position, without motion to it";
+      return "FROM after motion: taken as the new position, without motion to it";
     });
   }
   from_line_ = line;
@@ -71,7 +71,7 @@ void BlockPath::set_from(const Vector3& tip, const Vector3& axis, std::uint32_t 
   direction_.setZero();
 }
 
-/// A cut from the FROM point: a rapid brings the tool there first. Behind motion that ended
+/// A cut from the FROM point: a rapid brings the tool there first. After motion that ended
 /// elsewhere the file does not show how it comes there.
 Outcome BlockPath::begin_at_from(std::uint32_t line) {
   if (has_moved()) {

@@ -24,7 +24,7 @@ struct ArcPath {
   std::uint32_t line = 0;  ///< of the word that gives it
 };
 
-/// Where the tool goes: turns lines and arcs into blocks, one behind the other, and counts them.
+/// Where the tool goes: turns lines and arcs into blocks, one after the other, and counts them.
 /// Everything in W, mm, rad, s. Proof: tests/unit/cl/motion_test.cpp, arc_test.cpp.
 class BlockPath {
  public:

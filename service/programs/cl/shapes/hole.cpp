@@ -54,7 +54,7 @@ std::vector<HoleMove> moves_of(const HoleCycle& cycle, const HoleLevels& levels)
     }
     from = end;
   }
-  if (cycle.ends_behind_one) return moves;
+  if (cycle.ends_after_one) return moves;
   if (feeds_out) moves.push_back({Kind::kFeedOut, rapid});
   if (cycle.kind == HoleKind::kStopOut) moves.push_back({Kind::kSpindleStop, ends.back()});
   const double retract = std::max(levels.retract_mm, rapid);

@@ -131,10 +131,10 @@ Outcome set_pecks(const CycleWords& words, HoleCycle& cycle) {
   return {};
 }
 
-/// What words behind the type make of it: DRILL,DEEP and BORE,DRAG.
+/// What words after the type make of it: DRILL,DEEP and BORE,DRAG.
 Outcome set_kind(const CycleWords& words, const HoleType& type, HoleCycle& cycle) {
   cycle.kind = type.kind;
-  cycle.ends_behind_one = type.word == "MILL";
+  cycle.ends_after_one = type.word == "MILL";
   if (words.has("DEEP")) cycle.kind = HoleKind::kDeep;
   if (words.has("BRKCHP")) cycle.kind = HoleKind::kChipBreak;
   for (const std::string_view word : {"NODRAG", "BACK", "ORIENT"}) {

@@ -23,7 +23,7 @@ enum class HoleKind : std::uint8_t {
   kRefused     ///< nothing: its definition was refused, and its holes say no more than that
 };
 
-/// Where the tool goes behind a hole.
+/// Where the tool goes after a hole.
 enum class CycleReturn : std::uint8_t {
   kToRetract,     ///< to the retract level that the cycle gives; else to its rapid level
   kToRapidLevel,  ///< to the rapid level, whatever else is given (CYCLE/CLEAR)
@@ -35,8 +35,8 @@ enum class CycleReturn : std::uint8_t {
 struct HoleCycle {
   HoleKind kind = HoleKind::kDrill;
   CycleReturn returns = CycleReturn::kToRetract;
-  bool ends_behind_one = false;  ///< CYCLE/MILL
-  double depth = 0;              ///< below the top
+  bool ends_after_one = false;  ///< CYCLE/MILL
+  double depth = 0;             ///< below the top
   double rapid_level = 0;
   double retract_level = 0;   ///< not below rapid_level
   std::vector<double> pecks;  ///< in order, the last repeats; empty: in one go
@@ -44,7 +44,7 @@ struct HoleCycle {
   int pecks_to_retract = 0;   ///< chip breaking: out of the hole behind so many; 0: never
   double dwell_s = 0;
   double dwell_revolutions = 0;
-  bool dwells_at_pecks = true;  ///< behind each peck; else at the bottom alone
+  bool dwells_at_pecks = true;  ///< after each peck; else at the bottom alone
   WrittenFeed feed;             ///< kNone: the one in force
   WrittenFeed feed_out;         ///< kNone: as `kind` says, at rapid or at `feed`
 };

@@ -33,7 +33,7 @@ ToolPose evaluate(const ClampedCubic& spline, const std::vector<double>& knots, 
   return d[kDegree];
 }
 
-/// Control points of the second derivative, one behind the other; 0 where knots coincide.
+/// Control points of the second derivative, one after the other; 0 where knots coincide.
 std::vector<ToolPose> second_derivative(const ClampedCubic& spline,
                                         const std::vector<double>& knots) {
   std::vector<ToolPose> d = spline.points;

@@ -26,7 +26,7 @@ struct ChordTolerance {
 /// Largest number of chords that one spline is cut into.
 inline constexpr std::size_t kMaxChords = 200'000;
 
-/// Points behind the first of chords that lie within the tolerance of the spline; the last is its
+/// Points after the first of chords that lie within the tolerance of the spline; the last is its
 /// end. Axes are unit vectors. Empty where it would take more than kMaxChords. The number in each
 /// span of knots follows from its largest second derivative, which lies at a control point of the
 /// second derivative: chord error <= h^2 / 8 max |f''|. Proof: tests/unit/cl/spline_test.cpp.

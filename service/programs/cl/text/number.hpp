@@ -12,7 +12,7 @@ namespace meridian::cl {
 /// double; words such as NAN and INF are not numbers. Proof: tests/unit/cl/number_test.cpp.
 [[nodiscard]] bool parse_number(std::string_view text, double& value) noexcept;
 
-/// The same; `decimals`: digits behind the point, kMaxDecimals for a number with an exponent.
+/// The same; `decimals`: digits after the point, kMaxDecimals for a number with an exponent.
 [[nodiscard]] bool parse_number(std::string_view text, double& value,
                                 std::uint8_t& decimals) noexcept;
 inline constexpr std::uint8_t kMaxDecimals = 15;

@@ -173,9 +173,9 @@ void StatementReader::cut(std::string_view text, Statement& out) {
       starts_number(text.empty() ? ' ' : text.front()) ? std::string_view{} : first_word(text);
   std::size_t used = major.size();
   if (is_word(major, "TOOL")) {  // TOOL PATH/ is the only major word of two
-    const std::string_view behind = trimmed(text.substr(used));
-    if (is_word(first_word(behind), "PATH")) {
-      used = static_cast<std::size_t>(behind.data() - text.data()) + 4;
+    const std::string_view remainder = trimmed(text.substr(used));
+    if (is_word(first_word(remainder), "PATH")) {
+      used = static_cast<std::size_t>(remainder.data() - text.data()) + 4;
       major = "TOOL PATH";
     }
   }

@@ -17,7 +17,7 @@ struct Argument {
   std::string_view text;
   double number = 0;
   bool is_number = false;
-  std::uint8_t decimals = 0;  ///< of a number: digits behind its point
+  std::uint8_t decimals = 0;  ///< of a number: digits after its point
 };
 
 /// One logical line of a CL file, continuation lines joined: MAJOR / argument, argument ...
@@ -34,7 +34,7 @@ struct Statement {
   /// What is wrong with the list of its arguments; of two faults the first of these.
   enum class ArgumentFault : std::uint8_t {
     kNone,
-    kEmpty,   ///< a comma with nothing before or behind it
+    kEmpty,   ///< a comma with nothing before or after it
     kTooMany  ///< more than kMaxArguments: the others are left out
   };
 
@@ -70,7 +70,7 @@ struct RecordedStatement {
 /// `$` continues a statement on the next line, with or without a comma before it; what stands
 /// behind it on its line is ignored. `$$` begins a comment. Comments that carry data are given out
 /// as statements: `$$-> WORD / ...` (with its own continuation) and the matrix of `$$*CATIA0`.
-/// A statement number (`N22`, and a comma behind it or not) is taken off the word behind it.
+/// A statement number (`N22`, and a comma behind it or not) is taken off the word after it.
 class StatementReader {
  public:
   enum class Outcome : std::uint8_t {

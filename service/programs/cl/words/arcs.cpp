@@ -39,7 +39,7 @@ Numbers numbers_of(std::string_view text, std::size_t at) {
   return numbers;
 }
 
-Numbers numbers_behind(std::string_view text, std::string_view keyword, bool last) {
+Numbers numbers_after(std::string_view text, std::string_view keyword, bool last) {
   const std::size_t at = last ? text.rfind(keyword) : text.find(keyword);
   return at == std::string_view::npos ? Numbers{} : numbers_of(text, at + keyword.size());
 }
@@ -51,7 +51,7 @@ Outcome refuse_second(const Modal& m) {
   return refuse("an arc inside a spline", "output all control points of the spline before it");
 }
 
-/// TIMES,n behind the numbers of a CIRCLE; 0: it is not there.
+/// TIMES,n after the numbers of a CIRCLE; 0: it is not there.
 Expected<int, Refusal> turns_of(const Statement& s, std::size_t numbers) {
   const bool has_times = numbers + 2 == s.argument_count &&
                          is_word(s.arguments[numbers].text, "TIMES") &&
@@ -188,10 +188,10 @@ Outcome read_tool_on(Modal& m, const Statement& s) {
   std::string text(s.rest);
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  const Numbers circle = numbers_behind(text, "CIRCLE", false);
-  const Numbers cylinder = numbers_behind(text, "CYLNDR", false);
-  const Numbers line = numbers_behind(text, "LINE", false);
-  const Numbers point = numbers_behind(text, "POINT", true);
+  const Numbers circle = numbers_after(text, "CIRCLE", false);
+  const Numbers cylinder = numbers_after(text, "CYLNDR", false);
+  const Numbers line = numbers_after(text, "LINE", false);
+  const Numbers point = numbers_after(text, "POINT", true);
   PendingArc arc;
   arc.form = PendingArc::Form::kForward;
   arc.line = s.line;

@@ -36,7 +36,7 @@ int turned_about(std::string_view word) {
   return is_word(word, "XYROT") ? 2 : -1;
 }
 
-/// What argument 1 and the numbers behind it do in one pass; the count stands last.
+/// What argument 1 and the numbers after it do in one pass; the count stands last.
 Expected<Frame, Refusal> step_of(const Statement& s) {
   const std::string_view what = s.arguments[1].text;
   const std::size_t numbers = s.number_count - 2;  // without n and the count
@@ -103,7 +103,7 @@ Outcome read_copy(Modal& m, const Statement& s) {
   const Frame before = m.copies.transformation();
   if (auto done = m.copies.repeat(number, *step, times, start_of(m), s.line); !done) return done;
   m.remarks.warn("COPY", s.line, [number, times] {
-    return "COPY: the motion behind INDEX/" + std::to_string(number) + " is run " +
+    return "COPY: the motion after INDEX/" + std::to_string(number) + " is run " +
            std::to_string(times) + (times == 1 ? " time" : " times") + " more";
   });
   put_copy_in_force(m, before);

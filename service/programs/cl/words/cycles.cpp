@@ -194,7 +194,7 @@ Outcome run_hole(Modal& m, const Vector3& top, std::uint32_t line) {
   }
   ++m.summary.holes;
   ++m.holes_of_cycle;
-  if (m.cycle->ends_behind_one) end_cycle(m);
+  if (m.cycle->ends_after_one) end_cycle(m);
   return {};
 }
 

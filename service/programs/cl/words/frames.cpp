@@ -27,7 +27,7 @@ Expected<std::array<double, 12>, Refusal> numbers_of(const Statement& s, std::si
 Outcome refuse_inside_curve(const Modal& m, const Statement& s) {
   if (m.curve.index() == 0) return {};
   return refuse(std::string(s.major) + ": the frame changes between CIRCLE and its GOTO",
-                "change it before CIRCLE or behind the GOTO");
+                "change it before CIRCLE or after the GOTO");
 }
 
 /// Three rows of four.
@@ -118,7 +118,7 @@ Outcome read_trans(Modal& m, const Statement& s) {
     m.frames.set_shift(std::nullopt);
     return {};
   }
-  m.remarks.warn("TRANS", s.line, [] { return "TRANS: the points behind it are shifted by it"; });
+  m.remarks.warn("TRANS", s.line, [] { return "TRANS: the points after it are shifted by it"; });
   m.frames.set_shift(Frame{Eigen::Matrix3d::Identity(), shift});
   return {};
 }
@@ -133,7 +133,7 @@ Outcome read_tracut(Modal& m, const Statement& s) {
   const auto frame = matrix_of(s);
   if (!frame) return tl::make_unexpected(frame.error());
   m.remarks.warn("TRACUT", s.line,
-                 [] { return "TRACUT: the points behind it are put through its matrix"; });
+                 [] { return "TRACUT: the points after it are put through its matrix"; });
   m.frames.set_transformation(*frame);
   return {};
 }
@@ -148,7 +148,7 @@ Outcome read_rotary(Modal& m, const Statement& s) {
   }
   if (m.curve.index() != 0 || m.cycle) {
     return refuse(std::string(s.major) + " inside an arc, a spline or a cycle",
-                  "write it before or behind");
+                  "write it before or after");
   }
   m.summary.skip(s.major, s.line);
   m.rotary.line = is_zero ? 0 : s.line;
@@ -162,7 +162,7 @@ Outcome read_mode(Modal& m, const Statement& s) {
   }
   for (const char* const word : {"TURN", "TOOL", "AXIS"}) {
     if (s.has_word(word) && s.major == "MODE") {
-      return refuse("MODE/" + std::string(word) + " changes what the points behind it mean",
+      return refuse("MODE/" + std::string(word) + " changes what the points after it mean",
                     "output points of the tool tip in the part");
     }
   }

@@ -219,7 +219,7 @@ Outcome read_cutcom(Modal& m, const Statement& s) {
   if (s.has_word("OFF") || m.cutcom_path == CutcomPath::kOfTool) return {};
   if (m.cutcom_path == CutcomPath::kOfPart) {
     return refuse(
-        "CUTCOM behind CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_PROFILE: the points are those of "
+        "CUTCOM after CUTCOM_GEOMETRY_TYPE/OUTPUT_ON_PROFILE: the points are those of "
         "the part's edge, which the control would leave by the tool's radius",
         "let Creo output the path of the tool's centre (OUTPUT_ON_CENTER)", "CUTCOM");
   }

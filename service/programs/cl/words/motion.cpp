@@ -109,13 +109,13 @@ Outcome axis_left_out(Modal& m, std::uint32_t line) {
   if (m.axis.written == kPlusZ) return {};
   if (meaning == MissingAxis::kPlusZ) {
     m.remarks.warn("plus z", line, [] {
-      return "points without a tool axis behind a tilted one: the axis is +z there, as Creo means "
+      return "points without a tool axis after a tilted one: the axis is +z there, as Creo means "
              "it";
     });
     return set_axis(m, kPlusZ.data(), ToolAxis::Source::kPoint);
   }
   return refuse(
-      "a point without a tool axis behind a tilted one: whether the axis stays, is +z, or that of "
+      "a point without a tool axis after a tilted one: whether the axis stays, is +z, or that of "
       "the last CSYS is the CAM system's to say, and the file does not show which wrote it",
       "--dialect nx, catia, mastercam, hypermill or iso: it stays; creo: +z; solidworks: that of "
       "the last CSYS",

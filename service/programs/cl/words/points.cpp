@@ -8,7 +8,7 @@
 namespace meridian::cl {
 namespace {
 
-/// Digits behind the point, of what the file's last digit is worth.
+/// Digits after the point, of what the file's last digit is worth.
 void count_decimals(ClSummary& summary, const Statement& s) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (s.arguments[i].decimals > summary.decimals) summary.decimals = s.arguments[i].decimals;
@@ -28,7 +28,7 @@ Outcome check_rotary(const Modal& m) {
   if (m.rotary.line == 0) return {};
   return refuse_at(m.rotary.line,
                    m.rotary.text +
-                       " turns a rotary axis, and the points behind it carry no tool "
+                       " turns a rotary axis, and the points after it carry no tool "
                        "axis: where they lie depends on the machine",
                    "output the tool axis with every GOTO (MULTAX)");
 }
@@ -178,7 +178,7 @@ Outcome read_multax(Modal& m, const Statement& s) {
 
 Outcome read_home(Modal& m, const Statement& s) {
   if (m.curve.index() != 0 || m.cycle)
-    return refuse("GOHOME inside an arc, a spline or a cycle", "write it before or behind");
+    return refuse("GOHOME inside an arc, a spline or a cycle", "write it before or after");
   if (s.argument_count > 0) {  // NX says where home is
     const std::size_t n = s.argument_count;
     if (!s.all_numbers() || (n != 3 && n != 6)) {

@@ -57,7 +57,7 @@ Outcome read_spline(Modal& m, const Statement& s) {
                   "output points or arcs");
   }
   if (m.curve.index() != 0 || m.cycle)
-    return refuse("NURBS inside an arc, a spline or a cycle", "write it before or behind");
+    return refuse("NURBS inside an arc, a spline or a cycle", "write it before or after");
   m.curve = PendingSpline{.line = s.line, .knots = {}, .points = {}};
   return {};
 }

@@ -27,7 +27,7 @@ Outcome read_end_of_path(Modal& m, const Statement&) {
 }
 
 /// The end block comes last: it waits for FINI or the end of the file, as posts switch spindle and
-/// coolant off behind END.
+/// coolant off after END.
 Outcome read_end(Modal& m, const Statement&) {
   if (const auto* const arc = std::get_if<PendingArc>(&m.curve)) {
     return refuse_at(arc->line, "CIRCLE without the GOTO that ends the arc");

@@ -233,7 +233,7 @@ constexpr std::array kTable = std::to_array<WordRow>({
     {"ROTATE", kMeaning, "/angle and words", read_rotary},
     {"ROTHED", kMeaning, "/angle and words", read_rotary},
     {"SAFETY", kHarmless, "/...", skip},
-    {"SCALE", kMeaning, "/...", refuse_word, "scales the points behind it; output them scaled"},
+    {"SCALE", kMeaning, "/...", refuse_word, "scales the points after it; output them scaled"},
     {"SECTION", kHarmless, "/...", skip},
     {"SELCTL", kHarmless, "/...", skip},
     {"SELECT", kHarmless, "/...", skip},
@@ -312,7 +312,7 @@ constexpr std::array kTable = std::to_array<WordRow>({
     {"WINDOW", kHarmless, "/...", skip},
     {"WORKPIECE", kHarmless, "/...", skip},
     {"XFORM", kMeaning, "/...", refuse_word,
-     "transforms the points behind it; output them transformed"},
+     "transforms the points after it; output them transformed"},
     {"ZOOM", kHarmless, "/...", skip},
 });
 static_assert(std::is_sorted(kTable.begin(), kTable.end(),

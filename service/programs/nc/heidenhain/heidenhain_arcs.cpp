@@ -29,7 +29,7 @@ struct PolarEnd {
 };
 
 /// IPA: as far as the arc goes, more than a turn for a helix.
-Expected<PolarEnd, cl::Refusal> end_behind(const State& s, double angle_deg) {
+Expected<PolarEnd, cl::Refusal> end_after(const State& s, double angle_deg) {
   constexpr double kLongest_deg = 1000 * kTurn_deg;
   if (!(angle_deg != 0 && std::abs(angle_deg) < kLongest_deg)) {
     return refuse("IPA of CP: an arc of no turn, or of more than a thousand");
@@ -66,7 +66,7 @@ cl::Outcome add_polar_end(const State& s, Line& iso) {
   if (by != nullptr && (by->number > 0) != is_left) {
     return refuse("CP with IPA against its DR", "give both the same sign");
   }
-  const auto end = by != nullptr ? end_behind(s, by->number)
+  const auto end = by != nullptr ? end_after(s, by->number)
                                  : Expected<PolarEnd, cl::Refusal>(end_at(s, at->number));
   if (!end) return tl::make_unexpected(end.error());
   std::erase_if(iso.words, [](const Word& w) { return w.address == "IPA" || w.address == "PA"; });

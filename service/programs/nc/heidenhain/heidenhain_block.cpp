@@ -116,7 +116,7 @@ bool is_of_motion(const Word& word) {
   return !word.is('F') && !word.is('S') && !word.is('T') && !word.is('M');
 }
 
-/// L B+Q121 C+Q122 behind PLANE .. STAY: the rotary axes go to where the plane wants them.
+/// L B+Q121 C+Q122 after PLANE .. STAY: the rotary axes go to where the plane wants them.
 cl::Outcome take_plane_angles(State& s, Line& iso) {
   const auto is_of_plane = [](const Word& word) {
     return word.distance_mode == Word::DistanceMode::kOfPlane;
@@ -171,7 +171,7 @@ cl::Outcome run_words(State& s, const Line& line) {
   if (auto done = act_before(s, iso); !done) return done;
   if (translated.retracts) {
     if (auto done = run_retract(s, line, iso); !done) return done;
-    return act_behind(s, iso);
+    return act_after(s, iso);
   }
   const bool moves = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
   const bool is_motion = statement != "STOP" && statement != "M" && statement != "TOOL CALL";
@@ -179,7 +179,7 @@ cl::Outcome run_words(State& s, const Line& line) {
   if (moves) {
     if (auto taken = take_plane_angles(s, iso); !taken) return taken;
     const bool goes_on = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
-    if (!goes_on) return act_behind(s, iso);
+    if (!goes_on) return act_after(s, iso);
     auto done = translated.is_machine_position
                     ? move_to_machine_position(s, iso, MachinePosition::kAsWritten)
                     : move(s, iso);
@@ -190,7 +190,7 @@ cl::Outcome run_words(State& s, const Line& line) {
   if (translated.calls_cycle || (is_modal && moves)) {
     if (auto done = call_cycle(s, iso); !done) return done;
   }
-  return act_behind(s, iso);
+  return act_after(s, iso);
 }
 
 /// A new speed of a spindle that turns holds from the next line on, which often gives its sense.

@@ -118,9 +118,9 @@ Expected<DatumWord, cl::Refusal> datum_word(std::string_view& text, const std::s
     return refuse(title + " by " + cl::quoted(word) + ", which only the control knows",
                   "output the shift as X, Y and Z", title);
   }
-  const std::string_view behind = word.size() > 1 ? word.substr(1) : take_word(text);
-  if (!is_number(behind, out.number)) {
-    return refuse(title + ": " + cl::quoted(behind) + " is no number", kNumbersByCam, title);
+  const std::string_view rest = word.size() > 1 ? word.substr(1) : take_word(text);
+  if (!is_number(rest, out.number)) {
+    return refuse(title + ": " + cl::quoted(rest) + " is no number", kNumbersByCam, title);
   }
   return out;
 }
@@ -202,10 +202,9 @@ cl::Outcome reset_frame_cycle(State& s, const Line& line, std::string_view numbe
     for (std::string_view word = take_word(text); !word.empty(); word = take_word(text)) {
       const bool is_scale = word.starts_with("SCL");
       const std::size_t letters = is_scale || word.starts_with("ROT") ? 3 : 1;
-      const std::string_view behind =
-          word.size() > letters ? word.substr(letters) : take_word(text);
+      const std::string_view rest = word.size() > letters ? word.substr(letters) : take_word(text);
       double value = 0;
-      if (!is_number(behind, value) || value != (is_scale ? 1 : 0)) {
+      if (!is_number(rest, value) || value != (is_scale ? 1 : 0)) {
         return refuse(title + " " + std::string(word.substr(0, 16)) +
                           (is_plane ? ": whether its angles are those of the axes depends on the "
                                       "machine"

@@ -208,7 +208,7 @@ class KlartextCutter {
     word.has_point = true;  // a number is what it says
     if (!cl::parse_number(plain, word.number, word.decimals)) {
       return refuse("word " + std::string(word.address.substr(0, 16)) +
-                    " without a number behind it");
+                    " without a number after it");
     }
     rest_.remove_prefix(stop);
     if (!word.is('M') && !is_of_m128(word) && line_.find(word.address) != nullptr) {

@@ -173,7 +173,7 @@ class SiemensCutter {
       number = *value;
     } else if (!cl::parse_number(take_while([](char c) { return is_digit(c) || c == '.'; }),
                                  number)) {
-      return refuse(std::string(address.substr(0, 32)) + "= without a number behind it");
+      return refuse(std::string(address.substr(0, 32)) + "= without a number after it");
     }
     skip_blanks();
     if (!rest_.empty() && std::string_view("+-*/").find(rest_.front()) != std::string_view::npos) {
@@ -222,7 +222,7 @@ class SiemensCutter {
     const bool has_sign = rest_.size() > 1 && rest_.front() == '-';
     const char first = rest_.empty() ? ' ' : rest_[has_sign ? 1 : 0];
     if (!cl::is_letter(first) && first != '_') return cut_number(word);
-    const std::string_view how = name_ahead();
+    const std::string_view how = next_name();
     if (how != "AC" && how != "IC") return cut_named_number(word);
     (void)take_while(is_name_sign);
     if (how == "AC") {
@@ -237,7 +237,7 @@ class SiemensCutter {
     return {};
   }
 
-  [[nodiscard]] std::string_view name_ahead() const {
+  [[nodiscard]] std::string_view next_name() const {
     std::size_t size = 0;
     while (size < rest_.size() && is_name_sign(rest_[size])) ++size;
     return rest_.substr(0, size);
@@ -284,7 +284,7 @@ class SiemensCutter {
     word.has_point = true;  // a number is what it says, with a point or without
     if (!cl::parse_number(word.digits, word.number, word.decimals)) {
       return refuse("address " + std::string(word.address.substr(0, 16)) +
-                    " without a number behind it");
+                    " without a number after it");
     }
     rest_.remove_prefix(stop);
     if (!rest_.empty() && std::string_view("+-*/").find(rest_.front()) != std::string_view::npos) {

@@ -39,7 +39,7 @@ struct NameOutcome {
   enum class Holes : std::uint8_t {
     kAsBefore,
     kHere,          ///< CYCLE81(...): one, where the tool stands
-    kAtEveryPoint,  ///< MCALL CYCLE81(...): behind every motion from the next line on
+    kAtEveryPoint,  ///< MCALL CYCLE81(...): after every motion from the next line on
     kNoMore         ///< MCALL alone
   };
   Holes holes = Holes::kAsBefore;

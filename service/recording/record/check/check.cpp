@@ -231,8 +231,8 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
   std::uint64_t next_cycle = report.begin_cycle, missing = 0;
   read = for_each(recording, options, [&](const RecordingRow& row) {
     joints.add(row, recording.has_velocity());
-    const bool is_ahead = row.cycle < report.begin_cycle;
-    if (has_cut && row.cycle <= report.end_cycle) tip_box.add(row, !is_ahead);
+    const bool is_before_cut = row.cycle < report.begin_cycle;
+    if (has_cut && row.cycle <= report.end_cycle) tip_box.add(row, !is_before_cut);
     if (has_cut && row.cycle >= report.begin_cycle && row.cycle <= report.end_cycle) {
       if ((row.flags & kSetpointDryEnabled) != 0) ++report.dry_cut_cycles;
       missing += row.cycle > next_cycle ? row.cycle - next_cycle : 0;

@@ -118,7 +118,7 @@ std::string to_text(const CheckReport& report) {
            static_cast<Count>(report.vertices), report.vertex_mm.value * 1e3,
            report.vertex_mm.line);
     if (report.vertices_in_gaps > 0) {
-      append(text, ", %llu behind missing cycles", static_cast<Count>(report.vertices_in_gaps));
+      append(text, ", %llu after missing cycles", static_cast<Count>(report.vertices_in_gaps));
     }
     if (report.unwindings > 0) {
       append(text, "\nunwound    %llu times, off the part", static_cast<Count>(report.unwindings));

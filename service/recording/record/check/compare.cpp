@@ -58,7 +58,7 @@ class Motion {
     return std::nullopt;
   }
 
-  [[nodiscard]] bool is_behind_gap() const noexcept { return row.cycle > before.cycle + 1; }
+  [[nodiscard]] bool is_after_gap() const noexcept { return row.cycle > before.cycle + 1; }
 
  private:
   RecordingReader& reader_;
@@ -113,8 +113,8 @@ class Comparison {
 /// How far `a` is ahead of `b` in the program: by plan time, and at one plan time, which is a rest,
 /// by block. Only the sign counts; 0: the same place.
 [[nodiscard]] double lead(const RecordingRow& a, const RecordingRow& b) noexcept {
-  const double ahead = a.plan_time_s - b.plan_time_s;
-  if (std::abs(ahead) > kSamePlanTime_s) return ahead;
+  const double earlier_by = a.plan_time_s - b.plan_time_s;
+  if (std::abs(earlier_by) > kSamePlanTime_s) return earlier_by;
   return a.sequence == b.sequence ? 0 : (a.sequence < b.sequence ? -1 : 1);
 }
 
@@ -125,24 +125,24 @@ class Comparison {
     if (!is_explained) ++report.unexplained;
   };
   while (a.is_there && b.is_there) {
-    const double ahead = lead(a.row, b.row);
+    const double earlier_by = lead(a.row, b.row);
     std::optional<RecordError> error;
-    if (ahead == 0) {
+    if (earlier_by == 0) {
       comparison.match(a.row, b.row);
       error = a.next();
       if (!error) error = b.next();
-    } else if (ahead < 0) {
+    } else if (earlier_by < 0) {
       if (comparison.is_rest(a.row)) {
         comparison.rest_of_a(a.row);
       } else {
-        only(report.only_a, b.is_behind_gap());
+        only(report.only_a, b.is_after_gap());
       }
       error = a.next();
     } else {
       if (comparison.is_rest(b.row)) {
         comparison.rest_of_b(b.row);
       } else {
-        only(report.only_b, a.is_behind_gap());
+        only(report.only_b, a.is_after_gap());
       }
       error = b.next();
     }

@@ -17,7 +17,7 @@ class VertexCheck {
 
   /// Vertices that were left.
   void add(std::span<const VertexPass> passes);
-  /// Behind the last row: of those that were not left the ones that were passed, in order.
+  /// After the last row: of those that were not left the ones that were passed, in order.
   void add_last(std::span<const VertexPass> passes);
   void finish(CheckReport& report) const;
 

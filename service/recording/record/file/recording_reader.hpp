@@ -63,7 +63,7 @@ class RecordingReader {
   RecordingReader(RecordingReader&&) noexcept;
   RecordingReader& operator=(RecordingReader&&) noexcept;
 
-  /// Reads the next row into `row`; false behind the last one.
+  /// Reads the next row into `row`; false after the last one.
   [[nodiscard]] Expected<bool, RecordError> next(RecordingRow& row);
   /// Back to the first row.
   void rewind() noexcept;

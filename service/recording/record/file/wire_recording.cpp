@@ -123,7 +123,7 @@ std::string WireBook::to_text() const {
       static_cast<Count>(received_), static_cast<Count>(missing_), static_cast<Count>(gap_count_),
       static_cast<Count>(longest_gap_), static_cast<Count>(duplicates_));
   for (const Gap& gap : gaps_) {
-    add("  %llu missing behind cycle %llu\n", static_cast<Count>(gap.count),
+    add("  %llu missing after cycle %llu\n", static_cast<Count>(gap.count),
         static_cast<Count>(gap.after));
   }
   if (gap_count_ > gaps_.size()) {

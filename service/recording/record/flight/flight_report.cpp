@@ -172,7 +172,7 @@ std::string to_text(const FlightReport& report, const MachineModel& model) {
            Count{report.block}, report.line, name_of(report.state));
   }
   if (report.is_dry_run) text += "dry run    no drive followed\n";
-  append(text, "kept       %.3f s before it, %.3f s behind; %llu cycles, %llu missing\n",
+  append(text, "kept       %.3f s before it, %.3f s after; %llu cycles, %llu missing\n",
          report.before_s, report.after_s, Count{report.rows}, Count{report.missing});
   if (report.stop_s > 0) append(text, "stop       FaultStop for %.3f s\n", report.stop_s);
   if (report.is_emergency) {

@@ -252,10 +252,10 @@ std::optional<RecordError> draw(RecordingReader& recording, const CheckedPath& p
                                 const std::string& file) {
   PictureData data;
   if (auto error = gather(recording, path, model, kColumns, data)) return error;
-  char behind[160];
-  std::snprintf(behind, sizeof behind, "machine %s, %.1f s", model.name.c_str(),
+  char details[160];
+  std::snprintf(details, sizeof details, "machine %s, %.1f s", model.name.c_str(),
                 data.columns.back().time_s);
-  const std::string whole = title.empty() ? behind : title + ", " + behind;
+  const std::string whole = title.empty() ? details : title + ", " + details;
   const auto error = plot::draw(file, {1800, 1260, 18, 15},
                                 [&](std::FILE* out) { print_script(out, data, model, whole); });
   if (!error) return std::nullopt;
