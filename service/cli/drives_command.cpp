@@ -139,22 +139,22 @@ int run_drives(const DrivesOptions& options) {
   StoppableOutput output;
   // Drives wait for nobody who reads what they say, at their begin and end neither.
   drive::LineReporter lines([&](const std::string& text) { output.print(text); });
-  lines.tell(fmt::format("drives of machine {} in DDS domain {}: {} drives, cycle {:.3f} ms{}",
-                         model.name, options.domain, model.joint_count,
-                         static_cast<double>(model.cycle_ns) * 1e-6,
-                         simulated.is_action_peer ? ", answers actions" : ""));
+  lines.write_line(
+      fmt::format("drives of machine {} in DDS domain {}: {} drives, cycle {:.3f} ms{}", model.name,
+                  options.domain, model.joint_count, static_cast<double>(model.cycle_ns) * 1e-6,
+                  simulated.is_action_peer ? ", answers actions" : ""));
   const auto report = drives::run_simulated_drives(participant, model, simulated, stop_flag(),
                                                    [&](const std::string& text) {
-                                                     if (!options.is_quiet) lines.tell(text);
+                                                     if (!options.is_quiet) lines.write_line(text);
                                                    });
-  lines.tell(fmt::format(
+  lines.write_line(fmt::format(
       "drives stopped: {} periods, {} lost, {} setpoints, {} periods bridged, {} actions",
       report.periods, report.periods_lost, report.setpoints_seen, report.periods_bridged,
       report.actions));
   for (std::size_t i = 1; i < drive::kDropKinds; ++i) {
     const auto kind = static_cast<drive::Drop>(i);
     if (report.dropped[kind] == 0) continue;
-    lines.tell(fmt::format("{} {} were dropped", report.dropped[kind], drive::name_of(kind)));
+    lines.write_line(fmt::format("{} {} were dropped", report.dropped[kind], drive::name_of(kind)));
   }
   return kFine;
 }

@@ -133,7 +133,7 @@ class Files {
     if (mcap_) mcap_->add(row);
   }
   void report(const dds::Status& status) {
-    if (mcap_) mcap_->tell(status.state, status.alarm, status.alarm_joint);
+    if (mcap_) mcap_->add_status(status.state, status.alarm, status.alarm_joint);
   }
   /// What was lost.
   [[nodiscard]] std::optional<record::RecordError> close() {

@@ -102,7 +102,7 @@ void expect_within_budget(const std::string& workload, int calls) {
 }
 
 /// The same of the call that takes the most.
-void expect_most_within_budget(const std::string& workload, int calls) {
+void expect_max_within_budget(const std::string& workload, int calls) {
   if (const char* const why = why_not_counted(); *why != '\0') GTEST_SKIP() << why;
   const auto counts = count_calls(workload, calls);
   ASSERT_FALSE(counts.empty()) << "count_instructions " << workload << " failed under callgrind";
@@ -124,7 +124,7 @@ TEST(InstructionGate, CycleThatSeeksTheEndOfItsBlock) {
   expect_within_budget("cycle_single_block", 1000);
 }
 TEST(InstructionGate, TheDearestCycleOfASmoothCutOverWindows) {
-  expect_most_within_budget("cycle_over_windows", 600);
+  expect_max_within_budget("cycle_over_windows", 600);
 }
 TEST(InstructionGate, SetpointOnASpline) { expect_within_budget("setpoint_spline", 20000); }
 TEST(InstructionGate, SetpointBesideThePole) { expect_within_budget("setpoint_pole", 20000); }

@@ -180,7 +180,7 @@ class OptimumSearch {
 
  private:
   static constexpr double kEnough = 2e-5;     // gained by a pass, of the time
-  static constexpr double kLeast = 1e-6;      // of u̇² to linearise at, of the largest
+  static constexpr double kMin = 1e-6;        // of u̇² to linearise at, of the largest
   static constexpr std::int64_t kReach = 12;  // cells beside a rest whose limits its speed keeps
 
   [[nodiscard]] double h(std::size_t k) const {
@@ -199,13 +199,13 @@ class OptimumSearch {
   void pass_without_jerk(Optimum& out) {
     std::vector<double> backward(cells_ + 2), bound(cells_ + 2);
     two_pass(*grid_, limits_, 1, start_.state.b, backward, bound);
-    const double most = *std::max_element(bound.begin(), bound.end());
+    const double largest = *std::max_element(bound.begin(), bound.end());
     knots_.resize(cells_ + 1);
     middles_.resize(cells_);
     share_.resize(cells_ + 1);
     out.without_jerk_s = start_.duration + stop_.duration;
     for (std::size_t k = 0; k <= cells_; ++k) {
-      knots_[k] = std::max(bound[k], kLeast * most);
+      knots_[k] = std::max(bound[k], kMin * largest);
       share_[k] = (*grid_)[1 + static_cast<std::int64_t>(k)].tight;
     }
     for (std::size_t k = 0; k < cells_; ++k) {

@@ -147,9 +147,9 @@ for await (const { fields } of messages("/limit_shares")) {
 assert.ok(most > 0.5 && most < 1.01, `the largest share of a limit is ${most}`);
 assert.ok(Math.abs(shares - count / 40) <= 2, `${shares} messages of shares`);
 
-const told = [];
-for await (const { fields } of messages("/events")) if (fields.name === "operator") told.push(fields.msg);
-assert.deepEqual(told, events.map(([, verb, argument]) => `${verb} ${argument}`));
+const published = [];
+for await (const { fields } of messages("/events")) if (fields.name === "operator") published.push(fields.msg);
+assert.deepEqual(published, events.map(([, verb, argument]) => `${verb} ${argument}`));
 
 // Once more without the summary; and what a process leaves that is killed.
 const counted = new Map();

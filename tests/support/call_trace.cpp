@@ -76,11 +76,11 @@ void trace_call(Slot& slot, const char* what, const void* caller) noexcept {
   slot.traces_left.store(left - 1, std::memory_order_release);
 }
 
-std::string traces_text(const Slot& slot, std::size_t at_most) {
+std::string traces_text(const Slot& slot, std::size_t max) {
   std::string text;
   const std::size_t left = slot.traces_left.load(std::memory_order_acquire);
   const std::size_t kept = left == 0 && slot.traces[0].what == nullptr ? 0 : Slot::kTraces - left;
-  for (std::size_t i = 0; i < std::min(kept, at_most); ++i) {
+  for (std::size_t i = 0; i < std::min(kept, max); ++i) {
     const Trace& trace = slot.traces[i];
     text += trace.what;
     for (const void* const frame : trace.frames) {

@@ -19,6 +19,6 @@ void trace_call(Slot& slot, const char* what, const void* caller) noexcept;
 
 /// The kept calls, at most so many, one a line: function and its callers, innermost first. An
 /// address that no dynamic symbol covers reads FILE+OFFSET: `addr2line -Cfe FILE OFFSET`.
-[[nodiscard]] std::string traces_text(const Slot& slot, std::size_t at_most = Slot::kTraces);
+[[nodiscard]] std::string traces_text(const Slot& slot, std::size_t max = Slot::kTraces);
 
 }  // namespace meridian::watch

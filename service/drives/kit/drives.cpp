@@ -60,7 +60,7 @@ struct Drives::Impl {
         }),
         report([this](const std::string& text) {
           const std::lock_guard lock(reporting);
-          lines.tell(text);
+          lines.write_line(text);
         }),
         hardware(motors),
         participant(participant_of(options)),

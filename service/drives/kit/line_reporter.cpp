@@ -20,7 +20,7 @@ LineReporter::LineReporter(Print print) : print_(std::move(print)) {
 
 LineReporter::~LineReporter() = default;
 
-void LineReporter::tell(std::string_view text) noexcept {
+void LineReporter::write_line(std::string_view text) noexcept {
   Line line;
   line.length = static_cast<std::uint32_t>(std::min(text.size(), kMaxBytes));
   std::copy_n(text.begin(), line.length, line.text.begin());

@@ -28,7 +28,7 @@ class LineReporter {
   LineReporter& operator=(const LineReporter&) = delete;
 
   /// One thread. What is behind kMaxBytes of a line is left out.
-  void tell(std::string_view line) noexcept;
+  void write_line(std::string_view line) noexcept;
 
   static constexpr std::size_t kMaxLines = 256, kMaxBytes = 252;
 

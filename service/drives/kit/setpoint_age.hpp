@@ -17,21 +17,21 @@ class SetpointAge {
                              bool are_drives_off) noexcept {
     const std::int64_t apart = arrival_ns - due_ns;
     if (!has_any_ || are_drives_off) {
-      least_ = apart;
+      min_ = apart;
     } else {
       // The sender's clock may be slower: the measure follows by what two crystals differ.
       const std::int64_t drift = std::max<std::int64_t>(0, arrival_ns - last_ns_) / kDriftShare;
-      least_ = std::min(apart, least_ + drift);
+      min_ = std::min(apart, min_ + drift);
     }
     has_any_ = true;
     last_ns_ = arrival_ns;
-    return apart - least_ > longest_ns;
+    return apart - min_ > longest_ns;
   }
 
  private:
   static constexpr std::int64_t kDriftShare = 5000;  ///< 200 parts per million
   bool has_any_ = false;
-  std::int64_t least_ = 0, last_ns_ = 0;
+  std::int64_t min_ = 0, last_ns_ = 0;
 };
 
 }  // namespace meridian::drive

@@ -124,7 +124,7 @@ void DriveGroup::inject_now(const Injection& injection) noexcept {
       return setpoint_faults_.deafen(injection.value);
     case Injection::Kind::kLate:
       return setpoint_faults_.delay(injection.value);
-    case Injection::Kind::kUntold:
+    case Injection::Kind::kUnreported:
       return report_faults_.leave_out_cycle();
     case Injection::Kind::kStale:
       return report_wire_.delay(injection.value);

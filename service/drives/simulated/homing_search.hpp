@@ -38,8 +38,8 @@ class HomingSearch {
       step.state = drive::HomingState::kFailed;
       return step;
     }
-    const double there = reference_ - offset_, most = velocity_ * view.dt_s;
-    step.target += std::clamp(there - view.target, -most, most);
+    const double there = reference_ - offset_, max_step = velocity_ * view.dt_s;
+    step.target += std::clamp(there - view.target, -max_step, max_step);
     if (step.target != there || std::abs(view.position - there) > kThere) return step;
     step.state = drive::HomingState::kAttained;
     step.shift = std::exchange(offset_, 0);

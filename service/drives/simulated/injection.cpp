@@ -30,7 +30,7 @@ constexpr std::array<InjectionWord, 21> kWords{{
     {Kind::kLag, "lag", true, 500, "ms", "it follows with that time constant"},
     {Kind::kDeaf, "deaf", false, 100, "periods", "setpoints do not arrive for so long"},
     {Kind::kLate, "late", false, 100, "periods", "setpoints arrive so late from then on"},
-    {Kind::kUntold, "untold", false, 0, nullptr, "reports tell no setpoint that was taken"},
+    {Kind::kUnreported, "untold", false, 0, nullptr, "reports name no setpoint that was taken"},
     {Kind::kStale, "stale", false, 10, "periods", "reports arrive so late from then on"},
     {Kind::kDoubled, "doubled", false, 0, nullptr, "every report arrives twice"},
     {Kind::kSwapped, "swapped", false, 0, nullptr, "every other report is overtaken by the next"},

@@ -57,14 +57,14 @@ double time_between(const MachineModel& model, const JointVector& a, const Joint
 std::optional<JointVector> soonest(const MachineModel& model, const ToolPose& pose,
                                    const JointVector& from) {
   std::optional<JointVector> best;
-  double least = std::numeric_limits<double>::infinity();
+  double min_time = std::numeric_limits<double>::infinity();
   for (const inspect::PoseSolution& solution : inspect::solve_all(model, pose)) {
     JointVector q = solution.q;
     wind_into_travel(model, from, q);
     if (first_joint_outside_travel(model, q, kTravelMargin) >= 0) continue;
     const double time = time_between(model, from, q);
-    if (time < least) {
-      least = time;
+    if (time < min_time) {
+      min_time = time;
       best = q;
     }
   }

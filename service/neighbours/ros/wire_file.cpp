@@ -56,7 +56,7 @@ void WireFile::add(const record::WireRow& seen) {
   (void)file_->end_chunk();
 }
 
-void WireFile::tell(State state, Alarm alarm, int joint) {
+void WireFile::add_status(State state, Alarm alarm, int joint) {
   if (state_ != state) {
     file_->write_event(now_ns_, level_of(state), "state", std::string(record::word(state)));
   }

@@ -27,7 +27,7 @@ class WireFile {
   void add(const record::WireRow& seen);
   /// What the newest status says; told where it is other than before. `joint`: place in
   /// limited.hpp.
-  void tell(State state, Alarm alarm, int joint);
+  void add_status(State state, Alarm alarm, int joint);
   [[nodiscard]] std::optional<record::RecordError> close() { return file_->close(); }
 
  private:

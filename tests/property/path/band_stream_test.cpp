@@ -177,12 +177,12 @@ TEST(BandStream, TakesTheTimesOfTheShortestBlocksInInverseTimeAndNoMore) {
     blocks.push_back(block);
   }
   blocks.push_back(line_to(blocks.size(), {x + 20, 0, 0}));
-  double least_s = 0;
+  double min_s = 0;
   for (const BandSpan& span : run_band(blocks).spans) {
-    least_s += span.length / span.u_speed_mm_per_s;
+    min_s += span.length / span.u_speed_mm_per_s;
   }
-  EXPECT_GE(least_s, time_s * (1 - 1e-9));
-  EXPECT_LE(least_s, 1.2 * time_s);
+  EXPECT_GE(min_s, time_s * (1 - 1e-9));
+  EXPECT_LE(min_s, 1.2 * time_s);
 }
 
 TEST(BandStream, TakesPathsShorterThanAnyStep) {

@@ -14,9 +14,9 @@ namespace {
 TEST(LineReporter, PrintsEveryLineInItsOrderUntilItsEnd) {
   std::vector<std::string> printed;
   {
-    LineReporter teller([&](const std::string& line) { printed.push_back(line); });
-    for (int i = 0; i < 20; ++i) teller.tell("line " + std::to_string(i));
-    teller.tell(std::string(1000, 'x'));
+    LineReporter reporter([&](const std::string& line) { printed.push_back(line); });
+    for (int i = 0; i < 20; ++i) reporter.write_line("line " + std::to_string(i));
+    reporter.write_line(std::string(1000, 'x'));
   }
   ASSERT_EQ(printed.size(), 21U);
   EXPECT_EQ(printed.front(), "line 0");
@@ -27,18 +27,18 @@ TEST(LineReporter, PrintsEveryLineInItsOrderUntilItsEnd) {
 TEST(LineReporter, LetsNobodyWaitForAPrinterThatIsHeldAndSaysWhatWasLost) {
   std::vector<std::string> printed;
   std::promise<void> is_printing, may_go_on;
-  std::optional<LineReporter> teller;
-  teller.emplace([&](const std::string& line) {
+  std::optional<LineReporter> reporter;
+  reporter.emplace([&](const std::string& line) {
     printed.push_back(line);
     if (printed.size() > 1) return;
     is_printing.set_value();
     may_go_on.get_future().wait();
   });
-  teller->tell("held");
+  reporter->write_line("held");
   is_printing.get_future().wait();
-  for (std::size_t i = 0; i < LineReporter::kMaxLines + 44; ++i) teller->tell("waits");
+  for (std::size_t i = 0; i < LineReporter::kMaxLines + 44; ++i) reporter->write_line("waits");
   may_go_on.set_value();
-  teller.reset();
+  reporter.reset();
   ASSERT_EQ(printed.size(), LineReporter::kMaxLines + 2);
   EXPECT_EQ(printed.back(), "44 lines lost: nobody took them in time");
 }

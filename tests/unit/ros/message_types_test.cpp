@@ -34,9 +34,9 @@ TEST(MessageTypes, MakeNamesOfFieldsThatNoTwoJointsShare) {
 TEST(MessageTypes, HaveNoFieldForWhatARecordingDoesNotTell) {
   const MachineModel model = test::lai_machine();
   Contents wire{.has_velocity = false, .has_state = false};
-  const std::string least = cycle_type(model, wire).text;
+  const std::string min_text = cycle_type(model, wire).text;
   for (const char* const word : {"STATE_", "ALARM_", "Velocities", "Feedback", "lateness"}) {
-    EXPECT_EQ(least.find(word), std::string::npos) << word;
+    EXPECT_EQ(min_text.find(word), std::string::npos) << word;
   }
   const std::string usual = cycle_type(model, {}).text;
   EXPECT_NE(usual.find("uint8 STATE_FAULT_STOP=12\n"), std::string::npos);

@@ -97,14 +97,14 @@ TEST_F(Wire, TellsStatesAlarmsAndDrives) {
   open(test::lai_machine());
   record::WireRow row = row_at(1);
   file_->add(row);
-  file_->tell(State::kRunning, Alarm::kNone, 0);
-  file_->tell(State::kRunning, Alarm::kNone, 0);
+  file_->add_status(State::kRunning, Alarm::kNone, 0);
+  file_->add_status(State::kRunning, Alarm::kNone, 0);
   row = row_at(2);
   row.statusword[1] = 0x0008;
   row.is_emergency_stop = true;
   file_->add(row);
-  file_->tell(State::kFaultStop, Alarm::kDriveFault, 1);
-  file_->tell(State::kFault, Alarm::kDriveFault, 1);
+  file_->add_status(State::kFaultStop, Alarm::kDriveFault, 1);
+  file_->add_status(State::kFault, Alarm::kDriveFault, 1);
   EXPECT_FALSE(file_->close());
   const std::string name = model_.joints[1].name;
   EXPECT_EQ(events(), (std::vector<std::string>{"state: running", "drives: emergency stop",

@@ -93,10 +93,10 @@ TEST_F(OnTheWire, DrivesTakeTheSetpointsOfTheServiceWhoseControlwordsTheyObey) {
   thread_.join();
   thread_ = std::thread([] {});
   EXPECT_GT(report_.dropped[drive::Drop::kForeignSetpoint], 0U);
-  int told = 0;
+  int reported = 0;
   for (const std::string& text : said_)
-    told += text.find("are dropped: the drives obey") != std::string::npos;
-  EXPECT_EQ(told, 1);
+    reported += text.find("are dropped: the drives obey") != std::string::npos;
+  EXPECT_EQ(reported, 1);
 }
 
 TEST_F(OnTheWire, AFloodOfAnotherOneHidesNothingOfTheMaster) {
