@@ -18,7 +18,7 @@ namespace {
 
 static_assert(static_cast<int>(simulate::Cause::kPole) == 3 &&
                   static_cast<int>(simulate::Cause::kRest) == 4 &&
-                  static_cast<int>(simulate::Cause::kUnwinding) == 7,
+                  static_cast<int>(simulate::Cause::kRewind) == 7,
               "the page names them: service/panel/page/src/held.js");
 
 [[nodiscard]] ProgramPath::Cause seen(const simulate::ExplainedCycle& cycle) {

@@ -96,7 +96,7 @@ TEST(Live, TurnsCBackOffThePartAndEqualsTheSimulation) {
   ASSERT_TRUE(recording);
   std::vector<double> turned;
   for (record::RecordingRow row; recording->next(row).value_or(false);) {
-    if (row.kind == MotionKind::kUnwind) turned.push_back(row.joints[3]);
+    if (row.kind == MotionKind::kRewind) turned.push_back(row.joints[3]);
   }
   ASSERT_FALSE(turned.empty()) << "C was not turned back";
   EXPECT_NEAR(turned.front() - turned.back(), std::numbers::pi, 1e-3) << "to the other branch";

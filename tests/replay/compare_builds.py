@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Two builds of `meridian`, the same motion: every recording bit for bit the same.
 
-    tests/replay/compare_builds.py OLD NEW [--files DIR...] [--jobs N] [--only TEXT]
+    tests/replay/compare_builds.py OLD NEW [--files DIR...] [--old-machines DIR] [--jobs N] [--only TEXT]
 
 OLD and NEW are two programs `meridian`. Each simulates the same programs: the test pattern of every
 machine file on that machine, the sample part, and all CL files under --files on every machine file,
 smooth and with exact stop. A program that both refuse with the same exit code and words is the same.
+Where keys of machine files were renamed, OLD reads those of --old-machines.
 For changes that must not change behaviour: rooms, names, states. Exit code 1 where anything differs.
 """
 import argparse
@@ -38,11 +39,11 @@ def run(program, cl_file, machine, transition, folder):
 
 
 def compare(job):
-    old, new, cl_file, machine, transition = job
+    old, new, cl_file, machine, transition, old_machine = job
     results = []
-    for program in (old, new):
+    for program, file in ((old, old_machine), (new, machine)):
         with tempfile.TemporaryDirectory() as name:
-            results.append(run(program, cl_file, machine, transition, pathlib.Path(name)))
+            results.append(run(program, cl_file, file, transition, pathlib.Path(name)))
     return job, results
 
 
@@ -59,11 +60,12 @@ def jobs_of(arguments, folder):
     files = [file for folder in arguments.files for file in sorted(pathlib.Path(folder).rglob("*"))
              if file.suffix.lower() in SUFFIXES]
     for machine in machines:
-        pattern = pattern_of(arguments.old, machine, folder)
+        old_machine = pathlib.Path(arguments.old_machines) / machine.name if arguments.old_machines else machine
+        pattern = pattern_of(arguments.old, old_machine, folder)
         for file in ([pattern] if pattern else []) + files:
             for transition in ("smooth", "exact_stop"):
                 if arguments.only in f"{machine.stem} {file.name} {transition}":
-                    yield arguments.old, arguments.new, file, machine, transition
+                    yield arguments.old, arguments.new, file, machine, transition, old_machine
 
 
 def main():
@@ -71,6 +73,7 @@ def main():
     parser.add_argument("old")
     parser.add_argument("new")
     parser.add_argument("--files", action="append", default=[], help="folder of CL files")
+    parser.add_argument("--old-machines", default="", help="folder of machine files for OLD")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--only", default="", help="part of 'machine file transition'")
     arguments = parser.parse_args()

@@ -43,7 +43,7 @@ inline void starve(Cycle& c) noexcept {
       is_probing ? std::min(c.state.feed_override, 1.0) : c.state.feed_override;
   double wanted = is_rapid ? c.state.rapid_override : feed_override / c.reader.piece()->feed_factor;
   // It comes in mid-cut and ends in the cut: whoever slowed the cut down slowed it too.
-  if (motion == MotionKind::kUnwind) wanted = std::min(wanted, c.state.rapid_override);
+  if (motion == MotionKind::kRewind) wanted = std::min(wanted, c.state.rapid_override);
   return wanted;
 }
 

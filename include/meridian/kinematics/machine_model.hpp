@@ -54,7 +54,7 @@ enum class PolePolicy : std::uint8_t {
 
 /// What the planner does where the redundant joint would leave its travel within the program and
 /// tip and axis do not rest on the pole, where it turns in place whatever the policy.
-enum class UnwindPolicy : std::uint8_t {
+enum class RewindPolicy : std::uint8_t {
   kRefuse,  ///< the block is refused
   kRetract  ///< rest, off the part along the tool axis, whole turns of the redundant joint, back,
             ///< on
@@ -109,8 +109,8 @@ struct MachineModel {
   Tolerances tolerances;
   Transition transition = Transition::kExactStop;  ///< of programs that do not ask for another
   PolePolicy pole_policy = PolePolicy::kEase;
-  UnwindPolicy unwind_policy = UnwindPolicy::kRefuse;
-  double unwind_retract_mm = 0;  ///< kRetract: the whole way off the part, never less
+  RewindPolicy rewind_policy = RewindPolicy::kRefuse;
+  double rewind_retract_mm = 0;  ///< kRetract: the whole way off the part, never less
   double clearance_mm = 50;      ///< retract of an approach along the tool axis
   double approach_feed_mm_per_s = 10;
   double max_feed_mm_per_s = 0;  ///< programmed feeds above it are limited and reported

@@ -20,9 +20,9 @@ inline void wind_into_travel(const MachineModel& model, const JointVector& refer
   for (int i = 0; i < model.joint_count; ++i) {
     const JointSpec& joint = model.joints[i];
     if (!joint.is_rotary) continue;
-    q[i] = joint.is_endless ? unwind(q[i], reference[i])
-                            : unwind_inside(q[i], reference[i], joint.limits.travel_min,
-                                            joint.limits.travel_max, kMargin_rad);
+    q[i] = joint.is_endless ? nearest_winding(q[i], reference[i])
+                            : nearest_winding_inside(q[i], reference[i], joint.limits.travel_min,
+                                                     joint.limits.travel_max, kMargin_rad);
   }
 }
 

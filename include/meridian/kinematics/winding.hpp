@@ -23,7 +23,7 @@ inline constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 ///
 /// It keeps a rotary joint from rewinding: consecutive setpoints differ by at most half a turn.
 /// Unit: rad. RT: cycle. Proof: tests/unit/kinematics/winding_test.cpp.
-[[nodiscard]] inline double unwind(double angle, double reference) noexcept {
+[[nodiscard]] inline double nearest_winding(double angle, double reference) noexcept {
   return angle + whole_turns(angle, reference) * kTurn_rad;
 }
 
@@ -32,9 +32,9 @@ inline constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 ///
 /// `margin` widens the travel, so that an angle on its edge is not sent a whole turn away by
 /// rounding. Unit: rad. Proof: tests/unit/kinematics/winding_test.cpp.
-[[nodiscard]] inline double unwind_inside(double angle, double reference, double minimum,
-                                          double maximum, double margin) noexcept {
-  const double nearest = unwind(angle, reference);
+[[nodiscard]] inline double nearest_winding_inside(double angle, double reference, double minimum,
+                                                   double maximum, double margin) noexcept {
+  const double nearest = nearest_winding(angle, reference);
   if (nearest >= minimum - margin && nearest <= maximum + margin) return nearest;
   const double beyond = nearest < minimum ? minimum - margin - nearest : maximum + margin - nearest;
   const double turns =

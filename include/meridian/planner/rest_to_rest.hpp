@@ -14,7 +14,7 @@
 #include "meridian/path/cl_block.hpp"
 #include "meridian/planner/approach.hpp"
 #include "meridian/planner/motion_port.hpp"
-#include "meridian/planner/unwinding.hpp"
+#include "meridian/planner/rewind.hpp"
 
 namespace meridian {
 
@@ -30,7 +30,7 @@ struct PlanResult {
   PlanStatus status = PlanStatus::kOk;
   BlockReject reject;
   double axis_deviation_rad = 0;  ///< largest ease of the axis beside the pole
-  Unwinding unwinding;            ///< made ahead of the block, where it is_made()
+  Rewind rewind;                  ///< made ahead of the block, where it is_made()
 };
 
 /// Within this distance of the pole the programmed axis is eased onto the pole: nearer, the turn of
@@ -42,7 +42,7 @@ inline constexpr double kPoleEase_rad = 8e-6;
 ///
 /// Where the redundant joint would leave its travel on the way and the machine's file says how, the
 /// machine goes to another winding or branch ahead of the block, off the part
-/// (PlanResult::unwinding).
+/// (PlanResult::rewind).
 ///
 /// One window per block, without a tail: it ends at rest. The joints of the whole way between two
 /// blocks are checked before anything of it is published. What a block becomes depends on the
@@ -75,7 +75,7 @@ class RestToRestPlanner {
   /// Blocks that are going to be planned, the first motion block of the program first: the approach
   /// and the ways off the pole among them take the branch and winding that carry farthest. They
   /// must stay until this is called again, or begin(). A program that leaves travel among them
-  /// whatever is chosen, and where no unwinding helps, is refused with its first motion block, in
+  /// whatever is chosen, and where no rewind helps, is refused with its first motion block, in
   /// the name of the block that leaves. The slack says how far from the programmed path the blocks
   /// may be cut: what that can make of a joint's place is no reason to refuse.
   void look_at(std::span<const ClBlock> ahead, double tip_slack_mm = 0,
@@ -127,7 +127,7 @@ class RestToRestPlanner {
   /// Rewinds off the part, where the tool rests, to the best winding or branch that `trial` lets
   /// pass: in `block` the redundant joint would come to `beyond`, outside travel. Refused where
   /// none does, or where the tool cannot leave the part. kNoRoom as for plan().
-  [[nodiscard]] PlanResult unwind(const ClBlock& block, double beyond, const RewindTrial& trial,
+  [[nodiscard]] PlanResult rewind(const ClBlock& block, double beyond, const RewindTrial& trial,
                                   MotionWriter& writer) noexcept;
 
   /// Joints and tool length at the end of what was published.

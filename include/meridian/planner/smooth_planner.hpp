@@ -16,7 +16,7 @@
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/pole_ease.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
-#include "meridian/planner/unwinding.hpp"
+#include "meridian/planner/rewind.hpp"
 
 namespace meridian {
 
@@ -98,9 +98,9 @@ class SmoothPlanner {
   /// Takes the approach of the program, once, when it is published; false: not by now.
   [[nodiscard]] bool take_approach(Approach& out) noexcept;
 
-  /// Takes the oldest unwinding of what was planned so far; false if there is none. At most 256
+  /// Takes the oldest rewind of what was planned so far; false if there is none. At most 256
   /// wait, then the oldest go.
-  [[nodiscard]] bool take_unwinding(Unwinding& out) noexcept;
+  [[nodiscard]] bool take_rewind(Rewind& out) noexcept;
 
   /// Takes the oldest stretch beside the pole on which the axis was moved, of what was planned so
   /// far; false if there is none. At most 256 wait, then the oldest go.

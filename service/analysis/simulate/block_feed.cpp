@@ -70,10 +70,10 @@ void BlockFeed::take_eases() {
       explainer_->add_ease(ease.first_sequence, ease.last_sequence, ease.deviation_rad);
     }
   }
-  Unwinding unwinding;
-  while (planner_.take_unwinding(unwinding)) {
-    ++unwinding_count_;
-    if (unwindings_.size() < kMaxEases) unwindings_.push_back(unwinding);
+  Rewind rewind;
+  while (planner_.take_rewind(rewind)) {
+    ++rewind_count_;
+    if (rewinds_.size() < kMaxEases) rewinds_.push_back(rewind);
   }
 }
 

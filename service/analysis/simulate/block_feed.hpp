@@ -45,9 +45,9 @@ class BlockFeed {
   };
   static constexpr std::size_t kMaxEases = 100;
   [[nodiscard]] const Eases& eases() const noexcept { return eases_; }
-  /// Unwindings so far, in order: the first kMaxEases.
-  [[nodiscard]] const std::vector<Unwinding>& unwindings() const noexcept { return unwindings_; }
-  [[nodiscard]] std::uint64_t unwinding_count() const noexcept { return unwinding_count_; }
+  /// Rewinds so far, in order: the first kMaxEases.
+  [[nodiscard]] const std::vector<Rewind>& rewinds() const noexcept { return rewinds_; }
+  [[nodiscard]] std::uint64_t rewind_count() const noexcept { return rewind_count_; }
   [[nodiscard]] std::uint64_t motion_blocks() const noexcept { return motion_blocks_; }
   [[nodiscard]] std::uint64_t feeds_limited() const noexcept { return check_.feeds_limited(); }
 
@@ -71,8 +71,8 @@ class BlockFeed {
 
   std::string refusal_;
   Eases eases_;
-  std::vector<Unwinding> unwindings_;
-  std::uint64_t unwinding_count_ = 0;
+  std::vector<Rewind> rewinds_;
+  std::uint64_t rewind_count_ = 0;
   std::uint64_t motion_blocks_ = 0;
   bool has_begun_ = false, is_over_ = false;
 };

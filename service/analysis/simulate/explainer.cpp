@@ -105,7 +105,7 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
     path_position = find_path_position(*path, p.s, p.ds * record.rate);
     if (path->kind == PathKind::kSpline)
       block = find_block(path_position, std::max(record.sequence, running_));
-    if (path->motion == MotionKind::kUnwind) block = std::max(block, running_);
+    if (path->motion == MotionKind::kRewind) block = std::max(block, running_);
     const Open* const open = find(block);
     view = limits_.look(*path, *piece, piece_time, record.joints,
                         open != nullptr ? find_feed_share(*open, p.ds) : 0);
@@ -113,11 +113,11 @@ void Explainer::add_cycle(const CycleRecord& record, const TimePiece* piece, con
       view.limit = kMachineFeedLimit;
     }
     cause = cause_of(view, record);
-    if (path->motion == MotionKind::kUnwind) {
+    if (path->motion == MotionKind::kRewind) {
       decide(Cause::kRest);
       speeds_up_from_ = Cause::kRest;
       is_braking_ = false;
-      cause = Cause::kUnwinding;
+      cause = Cause::kRewind;
     }
   } else {
     cause = Cause::kWaiting;
@@ -165,7 +165,7 @@ double Explainer::find_feed_share(const Open& open, double speed) {
 }
 
 double Explainer::find_path_position(const PathPiece& path, double s, double speed) {
-  if (path.motion == MotionKind::kUnwind) return path_position_;  // off the path, and back to it
+  if (path.motion == MotionKind::kRewind) return path_position_;  // off the path, and back to it
   const Open* const open = find(path.sequence);  // may be over: a span reaches over many
   if (path.kind != PathKind::kSpline) {
     is_on_span_ = false;

@@ -19,7 +19,7 @@ std::string name_of(LimitId id, const MachineModel& model) {
 
 const char* name_of(Cause cause) noexcept {
   static constexpr const char* kNames[kCauses] = {"feed", "path",     "bend",    "pole",
-                                                  "rest", "override", "waiting", "unwinding"};
+                                                  "rest", "override", "waiting", "rewind"};
   return kNames[static_cast<std::size_t>(cause)];
 }
 

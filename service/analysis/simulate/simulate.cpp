@@ -63,8 +63,8 @@ class Run {
     report.eases = feed_.eases().first;
     report.ease_count = feed_.eases().count;
     report.largest_ease_rad = feed_.eases().largest_rad;
-    report.unwindings = feed_.unwindings();
-    report.unwinding_count = feed_.unwinding_count();
+    report.rewinds = feed_.rewinds();
+    report.rewind_count = feed_.rewind_count();
     if (report.outcome == Outcome::kDone || report.outcome == Outcome::kStarved) {
       if (!feed_.refusal().empty()) report.outcome = Outcome::kRefused;
     }

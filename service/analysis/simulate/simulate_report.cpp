@@ -40,12 +40,12 @@ void append_shares(std::string& text, const LimitShares& shares, const MachineMo
   text += "\n";
 }
 
-void append_unwindings(std::string& text, const SimulateReport& report, const MachineModel& model) {
+void append_rewinds(std::string& text, const SimulateReport& report, const MachineModel& model) {
   constexpr std::size_t kMaxReported = 12;
-  append(text, "unwinding  %llu times\n", static_cast<Count>(report.unwinding_count));
-  const std::size_t shown = std::min(kMaxReported, report.unwindings.size());
+  append(text, "rewind     %llu times\n", static_cast<Count>(report.rewind_count));
+  const std::size_t shown = std::min(kMaxReported, report.rewinds.size());
   for (std::size_t n = 0; n < shown; ++n) {
-    const Unwinding& one = report.unwindings[n];
+    const Rewind& one = report.rewinds[n];
     const char* const redundant = model.joints[redundant_joint(model)].name.c_str();
     append(text, "  line %u: %s would leave its travel; %s from %.3f deg by ", one.line,
            limited_spec(model, one.joint).name.c_str(), redundant,
@@ -57,8 +57,8 @@ void append_unwindings(std::string& text, const SimulateReport& report, const Ma
     }
     append(text, ", %.6g mm off\n", one.retract_mm);
   }
-  if (report.unwinding_count > shown) {
-    append(text, "  and %llu more\n", static_cast<Count>(report.unwinding_count - shown));
+  if (report.rewind_count > shown) {
+    append(text, "  and %llu more\n", static_cast<Count>(report.rewind_count - shown));
   }
 }
 
@@ -136,7 +136,7 @@ std::string to_text(const SimulateReport& report, const MachineModel& model) {
   append(text, "           the cuts alone at the programmed feed: %.3f s\n", report.at_feed_s);
   if (report.shares.cycles > 0) append_shares(text, report.shares, model);
   if (report.ease_count > 0) append_eases(text, report);
-  if (report.unwinding_count > 0) append_unwindings(text, report, model);
+  if (report.rewind_count > 0) append_rewinds(text, report, model);
   append(text, "cycles     %llu of %.6g ms, computed in %.2f s\n",
          static_cast<Count>(report.cycles), report.cycle_s * 1e3, report.computing_s);
   if (!report.happenings.empty()) text += "events\n";

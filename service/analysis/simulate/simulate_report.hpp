@@ -10,7 +10,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/path/block_reject.hpp"
 #include "meridian/planner/pole_ease.hpp"
-#include "meridian/planner/unwinding.hpp"
+#include "meridian/planner/rewind.hpp"
 
 namespace meridian::simulate {
 
@@ -58,8 +58,8 @@ struct SimulateReport {
   std::vector<PoleEase> eases;      ///< beside the pole: the first ones
   std::uint64_t ease_count = 0;
   double largest_ease_rad = 0;
-  std::vector<Unwinding> unwindings;  ///< of the redundant joint: the first ones
-  std::uint64_t unwinding_count = 0;
+  std::vector<Rewind> rewinds;  ///< of the redundant joint: the first ones
+  std::uint64_t rewind_count = 0;
   LimitShares shares;
   std::vector<Happening> happenings;  ///< the first kMaxHappenings: state changes, alarms
   std::uint64_t happenings_dropped = 0;

@@ -146,7 +146,7 @@ class Interpolator::Machine {
   void drop_reports() noexcept {
     for (PoleEase ease; planner_.take_ease(ease);) {
     }
-    for (Unwinding rewind; planner_.take_unwinding(rewind);) {
+    for (Rewind rewind; planner_.take_rewind(rewind);) {
     }
     for (FeedMark mark; planner_.take_feed_mark(mark);) {
     }

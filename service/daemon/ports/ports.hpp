@@ -16,7 +16,7 @@
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/pole_ease.hpp"
 #include "meridian/planner/smooth_planner.hpp"
-#include "meridian/planner/unwinding.hpp"
+#include "meridian/planner/rewind.hpp"
 #include "service/daemon/listeners/enabling_watch.hpp"
 #include "service/daemon/ports/command_port.hpp"
 #include "service/daemon/ports/queue_mark.hpp"
@@ -159,7 +159,7 @@ struct Ports {
   MotionPort motion;
   LatestValue<Approach> approach, approach_for_status;  ///< planner to commands, to telemetry
   SpscRing<PoleEase, 256> eases;                        ///< planner to telemetry
-  SpscRing<Unwinding, 256> unwindings;                  ///< planner to telemetry
+  SpscRing<Rewind, 256> rewinds;                  ///< planner to telemetry
   SpscRing<FeedMark, 256> feed_marks;                   ///< planner to telemetry
 
   SpscRing<Arrival, 1024> arrivals;  ///< receive thread to commands

@@ -123,7 +123,7 @@ void PlannerThread::report_plan() noexcept {
   ports_.planned_s.store(writer_.published_s() - published_before_s_, std::memory_order_relaxed);
   if (Approach approach; planner_.take_approach(approach)) report(approach);
   for (PoleEase ease; planner_.take_ease(ease);) (void)ports_.eases.try_push(ease);
-  for (Unwinding one; planner_.take_unwinding(one);) (void)ports_.unwindings.try_push(one);
+  for (Rewind one; planner_.take_rewind(one);) (void)ports_.rewinds.try_push(one);
   for (FeedMark mark; planner_.take_feed_mark(mark);) {
     if (!ports_.feed_marks.try_push(mark)) ports_.events_overrun.fetch_add(1);
   }

@@ -155,8 +155,8 @@ void TelemetryThread::drain() {
   recorder_.miss_events(ports_.events_overrun.load(std::memory_order_relaxed));
   PoleEase ease;
   while (ports_.eases.try_pop(ease)) log_->info("{}", telemetry::describe(ease));
-  Unwinding unwinding;
-  while (ports_.unwindings.try_pop(unwinding)) log_->info("{}", telemetry::describe(unwinding));
+  Rewind rewind;
+  while (ports_.rewinds.try_pop(rewind)) log_->info("{}", telemetry::describe(rewind));
   drain_records();
   CycleTiming timing;
   while (ports_.timings.try_pop(timing)) {

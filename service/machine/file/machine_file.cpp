@@ -9,9 +9,9 @@
 #include "meridian/units.hpp"
 #include "service/machine/file/homing_file.hpp"
 #include "service/machine/file/keep_out_file.hpp"
-#include "service/machine/file/mesh_file.hpp"
 #include "service/machine/file/kinematics_file.hpp"
 #include "service/machine/file/machine_name.hpp"
+#include "service/machine/file/mesh_file.hpp"
 #include "service/machine/file/monitoring_file.hpp"
 #include "service/machine/file/positions_file.hpp"
 #include "service/machine/file/section.hpp"
@@ -154,11 +154,11 @@ void read_tolerances(Section section, MachineModel& model) {
   section.finish();
 }
 
-void read_unwind(Section section, MachineModel& model) {
-  model.unwind_policy =
-      static_cast<UnwindPolicy>(section.choice_or("policy", 0, {"refuse", "retract"}));
-  if (model.unwind_policy == UnwindPolicy::kRetract) {
-    model.unwind_retract_mm = section.number(
+void read_rewind(Section section, MachineModel& model) {
+  model.rewind_policy =
+      static_cast<RewindPolicy>(section.choice_or("policy", 0, {"refuse", "retract"}));
+  if (model.rewind_policy == RewindPolicy::kRetract) {
+    model.rewind_retract_mm = section.number(
         "retract_mm", {1, 1e4}, "say how far the tool leaves the part before C may turn");
   } else if (section.has("retract_mm")) {
     section.refuse("retract_mm", "nothing beside policy = \"refuse\"",
@@ -191,7 +191,10 @@ MachineModel read_file(const toml::table& table, const std::string& name) {
   model.pole_policy = static_cast<PolePolicy>(pole.choice("policy", {"ease", "exact"}));
   model.tolerances.pole_axis_rad = units::rad_from_deg(pole.number_or("axis_deg", 0, {0, 10}));
   pole.finish();
-  read_unwind(file.section_or("unwind"), model);
+  if (file.has("unwind")) {
+    file.refuse("unwind", "rewind", "the table is called [rewind] now; rename it");
+  }
+  read_rewind(file.section_or("rewind"), model);
   read_frame(file.section_or("frame"), model);
   model.keep_out = read_keep_out(file, model);
   model.tip_box = read_tip_box(file, model);

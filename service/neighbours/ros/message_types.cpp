@@ -155,7 +155,7 @@ MessageType cycle_type(const MachineModel& model, const Contents& contents) {
       "uint16 flags  # 1 drives follow, 2 moving, 4 FaultStop, 8 dry run, 16 dry run leads\n";
   if (contents.has_state) {
     add_enum(text, "state", static_cast<State>(kStateCount - 1));
-    add_enum(text, "kind", MotionKind::kUnwind);
+    add_enum(text, "kind", MotionKind::kRewind);
   }
   if (contents.has_alarm) add_enum(text, "alarm", Alarm::kFeedbackTooFast);
   const std::string positions = fields_of("float64", limited_names(model));

@@ -34,9 +34,9 @@ namespace {
 
 /// What lets the redundant joint be turned back; empty where that is not what is missing.
 [[nodiscard]] std::string rewind_remedy(const BlockReject& reject, const MachineModel& model) {
-  const bool is_refused = model.unwind_policy == UnwindPolicy::kRefuse;
+  const bool is_refused = model.rewind_policy == RewindPolicy::kRefuse;
   if (!is_refused || reject.joint < 0 || reject.joint != redundant_joint(model)) return {};
-  return "; [unwind] policy = \"retract\" in the machine file turns it back off the part";
+  return "; [rewind] policy = \"retract\" in the machine file turns it back off the part";
 }
 
 [[nodiscard]] std::string reason(const BlockReject& reject, const MachineModel& model) {
@@ -100,10 +100,10 @@ Expected<std::vector<PlannedPiece>, PostError> PlannedPath::plan(const ClBlock& 
   if (result.status != PlanStatus::kOk) {
     return tl::make_unexpected(PostError{block.line, reason(result.reject, model_)});
   }
-  if (result.unwinding.is_made() && motion_ != BlockMotion::kDrives) {
+  if (result.rewind.is_made() && motion_ != BlockMotion::kDrives) {
     return tl::make_unexpected(PostError{
         block.line,
-        limited_spec(model_, result.unwinding.joint).name +
+        limited_spec(model_, result.rewind.joint).name +
             " runs out of its travel here and a rewind off the part is needed: under tool-centre "
             "control the tip would follow the turn; --dialect joints writes the "
             "rewind, or split the program ahead of this line"});

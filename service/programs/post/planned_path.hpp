@@ -28,7 +28,7 @@ struct PlannedPiece {
 /// the geometry alone is kept. Context: I/O.
 class PlannedPath {
  public:
-  /// A rewind is pieces of MotionKind::kUnwind, for blocks that say the drives; else it is refused.
+  /// A rewind is pieces of MotionKind::kRewind, for blocks that say the drives; else it is refused.
   PlannedPath(const MachineModel& model, ToolTable tools, BlockMotion motion);
 
   /// The pieces of `block` in order; empty where it does not move.
@@ -57,7 +57,7 @@ class PlannedPath {
 
 /// False for the ways to the first point and for rewinds, which no block of the CL file times.
 [[nodiscard]] constexpr bool is_of_block(const PathPiece& piece) noexcept {
-  return piece.motion != MotionKind::kApproach && piece.motion != MotionKind::kUnwind;
+  return piece.motion != MotionKind::kApproach && piece.motion != MotionKind::kRewind;
 }
 
 }  // namespace meridian::post

@@ -27,7 +27,7 @@ using Kind = ProgramStep::Kind;
 constexpr double kChord_mm = 2e-5;  // what a straight sample may cut off the tool's path
 constexpr double kChord_rad = 1e-7;
 constexpr int kMaxSamples = 4096;      // of one line
-constexpr double kRewindClear_mm = 1;  // the least that [unwind] retract_mm takes
+constexpr double kRewindClear_mm = 1;  // the least that [rewind] retract_mm takes
 
 /// Lines of a program between two tool changes, and the part of the CL file that they cut.
 struct Section {

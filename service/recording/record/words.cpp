@@ -15,7 +15,7 @@ using namespace std::string_view_literals;
 
 constexpr auto kKinds =
     std::to_array({"approach"sv, "cut"sv, "rapid"sv, "pole_turn"sv, "unwind"sv});
-static_assert(kKinds.size() == static_cast<std::size_t>(MotionKind::kUnwind) + 1);
+static_assert(kKinds.size() == static_cast<std::size_t>(MotionKind::kRewind) + 1);
 
 constexpr auto kStates =
     std::to_array({"off"sv, "enabling"sv, "ready"sv, "loaded"sv, "approaching"sv, "running"sv,

@@ -38,7 +38,7 @@ namespace {
     case MotionKind::kRapid:
       return ProgramPart::kRapid;
     case MotionKind::kPoleTurn:
-    case MotionKind::kUnwind:
+    case MotionKind::kRewind:
       return ProgramPart::kTurn;
     case MotionKind::kCut:
       break;

@@ -319,15 +319,15 @@ std::string describe(const PoleEase& ease) {
                      ease.last_line, units::deg_from_rad(ease.deviation_rad), name_of(ease.reason));
 }
 
-std::string describe(const Unwinding& unwinding) {
+std::string describe(const Rewind& rewind) {
   const std::string by =
-      unwinding.is_other_branch()
-          ? fmt::format("{:+.3f} deg to the other branch", units::deg_from_rad(unwinding.turn_rad))
-          : fmt::format("{:+} turns", unwinding.turns);
+      rewind.is_other_branch()
+          ? fmt::format("{:+.3f} deg to the other branch", units::deg_from_rad(rewind.turn_rad))
+          : fmt::format("{:+} turns", rewind.turns);
   return fmt::format(
       "line {}: a rotary joint would leave its travel; the redundant joint turns by {} from {:.3f} "
       "deg, {} mm off the part",
-      unwinding.line, by, units::deg_from_rad(unwinding.from_rad), unwinding.retract_mm);
+      rewind.line, by, units::deg_from_rad(rewind.from_rad), rewind.retract_mm);
 }
 
 std::string describe(const Approach& approach, const MachineModel& model, std::size_t room) {

@@ -8,7 +8,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/planner/approach.hpp"
 #include "meridian/planner/pole_ease.hpp"
-#include "meridian/planner/unwinding.hpp"
+#include "meridian/planner/rewind.hpp"
 
 /// What the cycle reports in numbers, in words for operators and the log.
 namespace meridian::telemetry {
@@ -26,7 +26,7 @@ enum class Weight : std::uint8_t { kDetail, kNews, kWarning, kError };
                                    const MachineModel& model);
 /// Where the tool axis will be moved beside the pole, by how much and why.
 [[nodiscard]] std::string describe(const PoleEase& ease);
-[[nodiscard]] std::string describe(const Unwinding& unwinding);
+[[nodiscard]] std::string describe(const Rewind& rewind);
 /// How the machine will come to a program's first motion, in at most `room` characters where they
 /// hold what cannot be left out: line, how far off the part its first actions are done, length,
 /// time and branch; then joints with what they move by; then the winding.

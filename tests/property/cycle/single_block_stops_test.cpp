@@ -65,7 +65,7 @@ struct Dome {
   std::vector<ClBlock> blocks;
 };
 
-TEST(SingleBlock, GoesThroughTheRestsOfAnUnwindingAndOfThePoleToTheEndOfTheBlock) {
+TEST(SingleBlock, GoesThroughTheRestsOfARewindAndOfThePoleToTheEndOfTheBlock) {
   const Dome dome;
   Stepped run(dome);
   ASSERT_TRUE(run.is_started());
@@ -75,12 +75,12 @@ TEST(SingleBlock, GoesThroughTheRestsOfAnUnwindingAndOfThePoleToTheEndOfTheBlock
   EXPECT_EQ(step_through(run, rests), every);
   EXPECT_TRUE(run.is_over());
   EXPECT_EQ(run.world.count(EventCode::kAlarm), 0);
-  int unwound = 0, turned = 0;
+  int rewound = 0, turned = 0;
   for (const CycleRecord& record : run.world.records) {
-    unwound += record.motion == MotionKind::kUnwind;
+    rewound += record.motion == MotionKind::kRewind;
     turned += record.motion == MotionKind::kPoleTurn;
   }
-  EXPECT_GT(unwound, 1000) << "cycles";
+  EXPECT_GT(rewound, 1000) << "cycles";
   EXPECT_GT(turned, 100) << "cycles";
   LimitShares worst;
   test::expect_within_limits(run.world, 0, false, worst);

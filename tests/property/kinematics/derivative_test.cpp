@@ -83,7 +83,7 @@ TEST(Derivative, JetsOfTheInverseKinematicsEqualFiniteDifferences) {
     JointVector at[5];
     for (int k = 0; k < 5; ++k) at[k] = along(model, a, b, (k - 2) * h, JointVector{}).q;
     for (int k = 0; k < 5; ++k) {  // unwrap theta1 where the path crosses ±pi
-      for (int m = 0; m < 5; ++m) at[m][3] = unwind(at[m][3], at[2][3]);
+      for (int m = 0; m < 5; ++m) at[m][3] = nearest_winding(at[m][3], at[2][3]);
     }
     for (int j = 0; j < 5; ++j) {
       EXPECT_EQ(jets.q[j].value(), at[2][j]);

@@ -67,7 +67,7 @@ struct BlockStream {
 
   void pop_reported() {
     for (FeedMark mark; planner.take_feed_mark(mark);) outcome.marks.push_back(mark);
-    for (Unwinding one; planner.take_unwinding(one);) outcome.trace.unwindings.push_back(one);
+    for (Rewind one; planner.take_rewind(one);) outcome.trace.rewinds.push_back(one);
     for (PoleEase one; planner.take_ease(one);) outcome.trace.eases.push_back(one);
   }
 

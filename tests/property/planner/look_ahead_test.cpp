@@ -21,7 +21,7 @@ namespace {
 
 TEST(LookAhead, BeginsOnTheWindingThatCarriesTheWholeProgram) {
   MachineModel model = limited(fork_machine(), -360, 360);
-  model.unwind_policy = UnwindPolicy::kRefuse;
+  model.rewind_policy = RewindPolicy::kRefuse;
   for (const double sign : {-1.0, 1.0}) {
     for (const double first_tilt : {0.3, 0.003, 0.0}) {  // beside the pole, and on it
       SCOPED_TRACE(testing::Message() << sign << ", begins " << first_tilt << " from the pole");
@@ -39,7 +39,7 @@ TEST(LookAhead, BeginsOnTheWindingThatCarriesTheWholeProgram) {
         const SmoothTrace trace = plan_smooth(model, blocks, start, {transition, 0, 0}, true);
         EXPECT_EQ(trace.last.status, PlanStatus::kOk) << "block " << trace.last.reject.sequence;
         EXPECT_EQ(trace.times.back().kind, TimeKind::kEnd);
-        EXPECT_TRUE(trace.unwindings.empty());
+        EXPECT_TRUE(trace.rewinds.empty());
       }
     }
   }
@@ -164,10 +164,10 @@ std::vector<ClBlock> there_and_back(double turn) {
 
 TEST(LookAhead, RefusesBeforeItStartsWhatNoWindingCarries) {
   const auto blocks = there_and_back(units::rad_from_deg(150));
-  for (const UnwindPolicy policy : {UnwindPolicy::kRefuse, UnwindPolicy::kRetract}) {
-    // C turns by 150 deg; no whole turn fits into its travel either, so unwinding does not help.
+  for (const RewindPolicy policy : {RewindPolicy::kRefuse, RewindPolicy::kRetract}) {
+    // C turns by 150 deg; no whole turn fits into its travel either, so rewind does not help.
     MachineModel model = limited(lai_machine(), -70, 70);
-    model.unwind_policy = policy;
+    model.rewind_policy = policy;
     const JointVector start = joints_of(model, blocks[0]);
     for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
       auto program = blocks;
@@ -193,7 +193,7 @@ TEST(LookAhead, RefusesNothingThatRoundingMayKeepInsideTravel) {
   const double turn = units::rad_from_deg(100);
   const auto blocks = there_and_back(turn);
   MachineModel model = limited(fork_machine(), -360, 360);
-  model.unwind_policy = UnwindPolicy::kRefuse;
+  model.rewind_policy = RewindPolicy::kRefuse;
   const JointVector start = joints_of(model, blocks[0]);
   JointVector at = start, most = start;
   for (std::size_t n = 0; n <= blocks.size() / 2; ++n) {

@@ -87,7 +87,7 @@ double asked_s(const std::vector<ClBlock>& blocks) {
 }
 
 bool is_along_program(const PathPiece& path) {
-  return path.motion != MotionKind::kApproach && path.motion != MotionKind::kUnwind;
+  return path.motion != MotionKind::kApproach && path.motion != MotionKind::kRewind;
 }
 
 /// Distances between the way of the tool and the program's, either way, in tolerances.

@@ -57,7 +57,7 @@ void expect_whole(const MachineModel& model, const SmoothTrace& trace, const Joi
       << "block " << trace.last.reject.sequence << " joint " << trace.last.reject.joint << " at "
       << trace.last.reject.value;
   EXPECT_EQ(trace.times.back().kind, TimeKind::kEnd);
-  EXPECT_TRUE(trace.unwindings.empty());
+  EXPECT_TRUE(trace.rewinds.empty());
   for (const PlanSample& one : sample(model, trace, 0.02, 0.37, start)) {
     ASSERT_LT(first_joint_outside_travel(model, one.q, 1e-9), 0);
   }

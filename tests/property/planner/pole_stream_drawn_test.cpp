@@ -200,7 +200,7 @@ TEST(PoleStreamDrawn, ReplaysStalls) {
       EXPECT_TRUE(are_same(stalled.trace, replayed.trace))
           << "differs, seed " << seed << " manner " << manner << " exact stop "
           << (drawn.transition == Transition::kExactStop) << told << " stuck " << stalled.stuck_at
-          << "/" << replayed.stuck_at << " unwindings " << stalled.trace.unwindings.size();
+          << "/" << replayed.stuck_at << " rewinds " << stalled.trace.rewinds.size();
     }
   }
   std::printf("stalled %d, of which %d changed the plan\n", late, changed);

@@ -80,7 +80,7 @@ TEST(PoleStream, GoesOffThePoleAfterASecondWhereNoBlockIsBehind) {
 /// As LookAhead.BeginsOnTheWinding..., with `dwells` blocks in front that do not move.
 TEST(PoleStream, LooksAtTheBeginOfAProgramBehindBlocksThatDoNotMove) {
   MachineModel model = limited(fork_machine(), -360, 360);
-  model.unwind_policy = UnwindPolicy::kRefuse;
+  model.rewind_policy = RewindPolicy::kRefuse;
   for (const int dwells : {0, 5, 60, 120}) {
     SCOPED_TRACE(dwells);
     std::vector<ClBlock> blocks;

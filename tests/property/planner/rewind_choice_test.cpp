@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "property/planner/block_stream.hpp"
-#include "property/planner/checked_unwindings.hpp"
+#include "property/planner/checked_rewinds.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
 #include "support/draws.hpp"
@@ -20,7 +20,7 @@
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
 
-namespace meridian::test::unwind {
+namespace meridian::test::rewinds {
 namespace {
 
 constexpr double kTilt_rad = 0.3;
@@ -102,8 +102,8 @@ TEST(RewindChoice, LeadsToTheNearestWindingThatCarriesAPathThatTurnsBack) {
           one_sided(at_the_end_of_travel(machine, 1440, {0, 40, -660}, step_of(transition)));
       const SmoothTrace trace = checked_plan(one, transition);
       if (HasFatalFailure()) return;
-      ASSERT_EQ(trace.unwindings.size(), 1U);
-      EXPECT_EQ(trace.unwindings[0].turns, -1);
+      ASSERT_EQ(trace.rewinds.size(), 1U);
+      EXPECT_EQ(trace.rewinds[0].turns, -1);
     }
   }
 }
@@ -115,9 +115,9 @@ TEST(RewindChoice, LeadsToTheWindingThatCarriesFarthestWhereNoneCarriesAll) {
                                                     {0, 1800}, step_of(transition)));
     const SmoothTrace trace = checked_plan(one, transition);
     if (HasFatalFailure()) return;
-    ASSERT_EQ(trace.unwindings.size(), 2U);
-    EXPECT_EQ(trace.unwindings[0].turns, -3) << "no winding carries farther";
-    EXPECT_EQ(trace.unwindings[1].turns, -2) << "the nearest that carries the rest";
+    ASSERT_EQ(trace.rewinds.size(), 2U);
+    EXPECT_EQ(trace.rewinds[0].turns, -3) << "no winding carries farther";
+    EXPECT_EQ(trace.rewinds[1].turns, -2) << "the nearest that carries the rest";
   }
 }
 
@@ -128,9 +128,9 @@ TEST(RewindChoice, LeadsToTheOtherBranchWhereThatIsNearer) {
       const Case one = at_the_end_of_travel(machine, 400, {0, 125}, step_of(transition));
       const SmoothTrace trace = checked_plan(one, transition);
       if (HasFatalFailure()) return;
-      ASSERT_EQ(trace.unwindings.size(), 1U);
-      EXPECT_TRUE(trace.unwindings[0].is_other_branch());
-      EXPECT_NEAR(std::abs(trace.unwindings[0].turn_rad), kTurn_rad / 2, 1e-6);
+      ASSERT_EQ(trace.rewinds.size(), 1U);
+      EXPECT_TRUE(trace.rewinds[0].is_other_branch());
+      EXPECT_NEAR(std::abs(trace.rewinds[0].turn_rad), kTurn_rad / 2, 1e-6);
       const int tilt = tilt_joint(one.model);
       EXPECT_NEAR(trace.joints[tilt], -one.start[tilt], 1e-6);
     }
@@ -144,8 +144,8 @@ TEST(RewindChoice, StaysOnTheBranchWhereTheTiltHasNoTravelOnTheOther) {
       const Case one = one_sided(at_the_end_of_travel(machine, 400, {0, 125}, step_of(transition)));
       const SmoothTrace trace = checked_plan(one, transition);
       if (HasFatalFailure()) return;
-      ASSERT_EQ(trace.unwindings.size(), 1U);
-      EXPECT_EQ(trace.unwindings[0].turns, -1);
+      ASSERT_EQ(trace.rewinds.size(), 1U);
+      EXPECT_EQ(trace.rewinds[0].turns, -1);
     }
   }
 }
@@ -173,8 +173,8 @@ TEST(RewindChoice, IsTheSameHoweverTheBlocksArrive) {
     const StreamOutcome once = stream(one, transition, 1, kNeverStalls);
     ASSERT_EQ(once.trace.last.status, PlanStatus::kOk);
     ASSERT_EQ(once.stuck_at, 0U);
-    ASSERT_EQ(once.trace.unwindings.size(), 1U);
-    EXPECT_EQ(once.trace.unwindings[0].turns, -1);
+    ASSERT_EQ(once.trace.rewinds.size(), 1U);
+    EXPECT_EQ(once.trace.rewinds[0].turns, -1);
     for (const std::size_t every : {7U, 100000U}) {
       const StreamOutcome again = stream(one, transition, every, kNeverStalls);
       EXPECT_TRUE(are_same(once.trace, again.trace)) << "read every " << every << " blocks";
@@ -188,12 +188,12 @@ TEST(RewindChoice, GoesOnWithTheBlocksThatAreThereWhereTheStreamStallsAndIsRepla
                                                     {0, 40, -660}, step_of(transition)));
     const StreamOutcome live = stream(one, transition, 1, 0);
     ASSERT_EQ(live.trace.last.status, PlanStatus::kOk);
-    ASSERT_EQ(live.trace.unwindings.size(), 2U) << "one more than where the blocks are known";
-    EXPECT_EQ(live.trace.unwindings[0].turns, -3) << "most room where C was going";
+    ASSERT_EQ(live.trace.rewinds.size(), 2U) << "one more than where the blocks are known";
+    EXPECT_EQ(live.trace.rewinds[0].turns, -3) << "most room where C was going";
     const StreamOutcome again = stream(one, transition, 1, kNeverStalls, &live.marks);
     EXPECT_TRUE(are_same(live.trace, again.trace));
   }
 }
 
 }  // namespace
-}  // namespace meridian::test::unwind
+}  // namespace meridian::test::rewinds

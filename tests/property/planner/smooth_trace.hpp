@@ -46,7 +46,7 @@ class PatientReader {
 struct SmoothTrace : Trace {
   int tails = 0;  ///< pieces of tails that were run
   std::vector<PoleEase> eases;
-  std::vector<Unwinding> unwindings;
+  std::vector<Rewind> rewinds;
 };
 
 /// Plans `blocks` from `start`; `reads(n)` tells whether the port is read after block n, `dry(n)`
@@ -70,7 +70,7 @@ SmoothTrace plan_smooth(const MachineModel& model, const std::vector<ClBlock>& b
       reader.read(trace, false);
     }
     for (PoleEase ease; planner.take_ease(ease);) trace.eases.push_back(ease);
-    for (Unwinding one; planner.take_unwinding(one);) trace.unwindings.push_back(one);
+    for (Rewind one; planner.take_rewind(one);) trace.rewinds.push_back(one);
     if (trace.last.status != PlanStatus::kOk) break;
     if (reads(n)) reader.read(trace, dry(n));
   }

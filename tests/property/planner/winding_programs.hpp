@@ -12,9 +12,9 @@
 /// Machines whose C has an end of travel, and blocks that turn it there.
 namespace meridian::test {
 
-constexpr double kRetract_mm = 30;  ///< of an unwinding
+constexpr double kRetract_mm = 30;  ///< of a rewind
 
-/// Limits as bench_machine(), C between `low_deg` and `high_deg`, unwinding off the part.
+/// Limits as bench_machine(), C between `low_deg` and `high_deg`, rewind off the part.
 inline MachineModel limited(MachineModel model, double low_deg, double high_deg) {
   const MachineModel bench = bench_machine();
   for (int i = 0; i < model.joint_count; ++i) {
@@ -29,8 +29,8 @@ inline MachineModel limited(MachineModel model, double low_deg, double high_deg)
   c.limits.travel_min = units::rad_from_deg(low_deg);
   c.limits.travel_max = units::rad_from_deg(high_deg);
   model.max_feed_mm_per_s = 1000;
-  model.unwind_policy = UnwindPolicy::kRetract;
-  model.unwind_retract_mm = kRetract_mm;
+  model.rewind_policy = RewindPolicy::kRetract;
+  model.rewind_retract_mm = kRetract_mm;
   return model;
 }
 

@@ -9,29 +9,29 @@ namespace meridian {
 namespace {
 
 TEST(Winding, TakesTheShortWayAcrossPi) {
-  EXPECT_NEAR(unwind(-3.1, 3.1), -3.1 + kTurn_rad, 1e-15);
-  EXPECT_NEAR(unwind(3.1, -3.1), 3.1 - kTurn_rad, 1e-15);
+  EXPECT_NEAR(nearest_winding(-3.1, 3.1), -3.1 + kTurn_rad, 1e-15);
+  EXPECT_NEAR(nearest_winding(3.1, -3.1), 3.1 - kTurn_rad, 1e-15);
 }
 
 TEST(Winding, LeavesAnAngleNearItsReferenceAlone) {
-  EXPECT_EQ(unwind(0.3, 0.4), 0.3);
-  EXPECT_EQ(unwind(0.0, 3.1), 0.0);
+  EXPECT_EQ(nearest_winding(0.3, 0.4), 0.3);
+  EXPECT_EQ(nearest_winding(0.0, 3.1), 0.0);
 }
 
 TEST(Winding, FollowsManyTurns) {
-  EXPECT_NEAR(unwind(0.5, 1000 * kTurn_rad), 0.5 + 1000 * kTurn_rad, 1e-12);
-  EXPECT_NEAR(unwind(0.5, -1000 * kTurn_rad), 0.5 - 1000 * kTurn_rad, 1e-12);
+  EXPECT_NEAR(nearest_winding(0.5, 1000 * kTurn_rad), 0.5 + 1000 * kTurn_rad, 1e-12);
+  EXPECT_NEAR(nearest_winding(0.5, -1000 * kTurn_rad), 0.5 - 1000 * kTurn_rad, 1e-12);
 }
 
 TEST(Winding, IsNeverFartherThanHalfATurn) {
   for (int i = -1000; i <= 1000; ++i) {
     const double reference = 0.0173 * i * 7;
-    EXPECT_LE(std::abs(unwind(2.9, reference) - reference), std::numbers::pi + 1e-13);
+    EXPECT_LE(std::abs(nearest_winding(2.9, reference) - reference), std::numbers::pi + 1e-13);
   }
 }
 
 TEST(Winding, PassesOnWhatIsNotANumber) {
-  EXPECT_TRUE(std::isnan(unwind(std::numeric_limits<double>::quiet_NaN(), 0)));
+  EXPECT_TRUE(std::isnan(nearest_winding(std::numeric_limits<double>::quiet_NaN(), 0)));
 }
 
 TEST(Winding, MovesIntoTravelWhereItCan) {
@@ -49,7 +49,8 @@ TEST(Winding, MovesIntoTravelWhereItCan) {
       {3.0, -3.1, -3.2, 3.2, 3.0},             // the short way ends outside: the long way
   };
   for (const Case& c : cases) {
-    EXPECT_NEAR(unwind_inside(c.angle, c.reference, c.minimum, c.maximum, 1e-9), c.expected, 1e-12)
+    EXPECT_NEAR(nearest_winding_inside(c.angle, c.reference, c.minimum, c.maximum, 1e-9),
+                c.expected, 1e-12)
         << c.angle << " near " << c.reference << " in [" << c.minimum << ", " << c.maximum << "]";
   }
 }

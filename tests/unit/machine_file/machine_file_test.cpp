@@ -164,12 +164,12 @@ TEST(MachineFile, TakesThePolesPolicyAndTheOverridesRamp) {
 
 TEST(MachineFile, TakesHowTheRedundantJointIsTurnedBack) {
   std::string text = test::read_text(kMachines / "lai.toml");
-  EXPECT_EQ(parse_machine(text, "as it ships").unwind_policy, UnwindPolicy::kRefuse);
+  EXPECT_EQ(parse_machine(text, "as it ships").rewind_policy, RewindPolicy::kRefuse);
   const std::string_view refuse = "policy = \"refuse\"";
   text.replace(text.find(refuse), refuse.size(), "policy = \"retract\"\nretract_mm = 75");
   const MachineModel model = parse_machine(text, "retract");
-  EXPECT_EQ(model.unwind_policy, UnwindPolicy::kRetract);
-  EXPECT_EQ(model.unwind_retract_mm, 75);
+  EXPECT_EQ(model.rewind_policy, RewindPolicy::kRetract);
+  EXPECT_EQ(model.rewind_retract_mm, 75);
 }
 
 TEST(MachineFile, SaysInWhichOrderAndHowLongJointsHome) {

@@ -51,8 +51,8 @@ class FarTurn final : public RewindTrial {
 
 TEST(RestToRestPlanner, TurnsTheRedundantJointBackToTheBestWindingThatFitsWhatFollows) {
   MachineModel model = test::lai_machine();  // C two turns either way
-  model.unwind_policy = UnwindPolicy::kRetract;
-  model.unwind_retract_mm = 20;
+  model.rewind_policy = RewindPolicy::kRetract;
+  model.rewind_retract_mm = 20;
   const auto port = std::make_unique<MotionPort>();
   MotionWriter writer(*port);
   RestToRestPlanner planner(model);
@@ -62,9 +62,9 @@ TEST(RestToRestPlanner, TurnsTheRedundantJointBackToTheBestWindingThatFitsWhatFo
   planner.begin(joints, model.tool_length_mm, 1);
   ClBlock block;
   block.sequence = 7;
-  const PlanResult result = planner.unwind(block, 13, FarTurn{}, writer);
+  const PlanResult result = planner.rewind(block, 13, FarTurn{}, writer);
   EXPECT_EQ(result.status, PlanStatus::kOk);
-  EXPECT_EQ(result.unwinding.turns, -3) << "no block is known, and there is the most room";
+  EXPECT_EQ(result.rewind.turns, -3) << "no block is known, and there is the most room";
   EXPECT_NEAR(planner.joints()[3], 12 - 3 * kTurn_rad, 1e-12);
 }
 

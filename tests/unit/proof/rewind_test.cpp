@@ -22,7 +22,7 @@ constexpr double kTravel_deg = 200;
 
 /// A trunnion whose table turns little farther than once; `is_tilted_both`: its tilt has travel for
 /// either branch.
-MachineModel narrow_machine(UnwindPolicy policy, bool is_tilted_both = false) {
+MachineModel narrow_machine(RewindPolicy policy, bool is_tilted_both = false) {
   MachineModel model = test::shipped("trunnion-ac");
   model.joints[redundant_joint(model)].is_endless = false;
   JointLimits& limits = model.joints[redundant_joint(model)].limits;
@@ -30,8 +30,8 @@ MachineModel narrow_machine(UnwindPolicy policy, bool is_tilted_both = false) {
   limits.travel_max = units::rad_from_deg(kTravel_deg);
   JointLimits& tilt = model.joints[redundant_joint(model) == 3 ? 4 : 3].limits;
   tilt.travel_min = is_tilted_both ? -tilt.travel_max : 0;
-  model.unwind_policy = policy;
-  model.unwind_retract_mm = kRetract_mm;
+  model.rewind_policy = policy;
+  model.rewind_retract_mm = kRetract_mm;
   return model;
 }
 
@@ -63,7 +63,7 @@ proof::ProgramReport checked(const std::string& program, const MachineModel& mod
 }
 
 TEST(Rewind, LeavesThePartTurnsCAloneAndComesBackAtTheApproachFeed) {
-  const MachineModel model = narrow_machine(UnwindPolicy::kRetract);
+  const MachineModel model = narrow_machine(RewindPolicy::kRetract);
   const auto program = test::written(round_a_cone(), model);
   ASSERT_TRUE(program) << program.error().message;
   const auto moves = test::read_nc(program->text).moves;
@@ -89,7 +89,7 @@ TEST(Rewind, LeavesThePartTurnsCAloneAndComesBackAtTheApproachFeed) {
 
 TEST(Rewind, IsNoPartOfThePathThatTheProgramIsHeldAgainst) {
   for (const bool is_tilted_both : {false, true}) {
-    const MachineModel model = narrow_machine(UnwindPolicy::kRetract, is_tilted_both);
+    const MachineModel model = narrow_machine(RewindPolicy::kRetract, is_tilted_both);
     const auto program = test::written(round_a_cone(), model);
     ASSERT_TRUE(program) << program.error().message;
     const proof::ProgramReport report = checked(program->text, model);
@@ -99,7 +99,7 @@ TEST(Rewind, IsNoPartOfThePathThatTheProgramIsHeldAgainst) {
 }
 
 TEST(Rewind, ToTheOtherBranchTurnsThroughThePoleWithTheTipAtRest) {
-  const MachineModel model = narrow_machine(UnwindPolicy::kRetract, true);
+  const MachineModel model = narrow_machine(RewindPolicy::kRetract, true);
   const auto program = test::written(round_a_cone(), model);
   ASSERT_TRUE(program) << program.error().message;
   const auto moves = test::read_nc(program->text).moves;
@@ -117,7 +117,7 @@ TEST(Rewind, ToTheOtherBranchTurnsThroughThePoleWithTheTipAtRest) {
 }
 
 TEST(Rewind, InThePartIsFound) {
-  const MachineModel model = narrow_machine(UnwindPolicy::kRetract);
+  const MachineModel model = narrow_machine(RewindPolicy::kRetract);
   const auto program = test::written(round_a_cone(), model);
   ASSERT_TRUE(program) << program.error().message;
   // Without the line that leaves the part, C turns in it.
@@ -138,14 +138,14 @@ TEST(Rewind, InThePartIsFound) {
 }
 
 TEST(Rewind, ThatCannotBeWrittenIsRefusedWithTheWayOut) {
-  const auto refused = test::written(round_a_cone(), narrow_machine(UnwindPolicy::kRefuse));
+  const auto refused = test::written(round_a_cone(), narrow_machine(RewindPolicy::kRefuse));
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("[unwind] policy = \"retract\""), std::string::npos)
+  EXPECT_NE(refused.error().message.find("[rewind] policy = \"retract\""), std::string::npos)
       << refused.error().message;
   post::PostOptions options;
   options.dialect = post::Dialect::kFanuc;
   options.offset_number = 1;
-  const auto tip = test::written(round_a_cone(), narrow_machine(UnwindPolicy::kRetract), options);
+  const auto tip = test::written(round_a_cone(), narrow_machine(RewindPolicy::kRetract), options);
   ASSERT_FALSE(tip);
   EXPECT_NE(tip.error().message.find("--dialect joints writes the rewind"), std::string::npos)
       << tip.error().message;

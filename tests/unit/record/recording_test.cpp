@@ -30,7 +30,7 @@ void expect_words(int count, std::optional<Enum> (*find)(std::string_view) noexc
 
 TEST(Recording, HasAWordForEveryStateMotionAndAlarm) {
   expect_words<State>(kStateCount, find_state);
-  expect_words<MotionKind>(static_cast<int>(MotionKind::kUnwind) + 1, find_motion_kind);
+  expect_words<MotionKind>(static_cast<int>(MotionKind::kRewind) + 1, find_motion_kind);
   expect_words<Alarm>(static_cast<int>(Alarm::kFeedbackTooFast) + 1, find_alarm);
 }
 

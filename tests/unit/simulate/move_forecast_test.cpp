@@ -97,8 +97,8 @@ TEST_F(Move, BeyondTravelIsRefusedByTheJointsName) {
 }
 
 TEST_F(Move, OnWhoseWayTheRedundantJointWouldBeRewoundIsRefused) {
-  model.unwind_policy = UnwindPolicy::kRetract;
-  model.unwind_retract_mm = 20;
+  model.rewind_policy = RewindPolicy::kRetract;
+  model.rewind_retract_mm = 20;
   joints[3] = model.joints[3].limits.travel_max - units::rad_from_deg(2);
   int refused = 0;
   for (const double degrees : {-60.0, 60.0}) {

@@ -57,7 +57,7 @@ TEST(ProgramSummary, GivesEachPartItsTimeAndTheyAddUpToTheWhole) {
   w.record.rate = 1;
   w.move(State::kRunning, MotionKind::kRapid, 403);
   w.move(State::kRunning, MotionKind::kPoleTurn, 30);
-  w.move(State::kRunning, MotionKind::kUnwind, 31);
+  w.move(State::kRunning, MotionKind::kRewind, 31);
   w.feed_override = w.record.rate = 0;
   w.run(State::kRunning, 40);
   w.feed_override = w.record.rate = 1;

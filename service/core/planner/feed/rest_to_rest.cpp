@@ -94,14 +94,14 @@ void RestToRestPlanner::look_at(std::span<const ClBlock> ahead, double tip_slack
   workspace_->router.look_at(ahead, {tip_slack_mm, axis_slack_rad});
 }
 
-PlanResult RestToRestPlanner::unwind(const ClBlock& block, double beyond, const RewindTrial& trial,
+PlanResult RestToRestPlanner::rewind(const ClBlock& block, double beyond, const RewindTrial& trial,
                                      MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
   if (w.stage_state == Workspace::Stage::kRefused) return w.result;
   if (w.stage_state != Workspace::Stage::kWhole) {
     w.clear_stage();
     PathFault fault{PathFault::Kind::kTravel, redundant_joint(w.model), beyond};
-    if (w.may_unwind(fault)) fault = w.rewind(block, fault, &trial);
+    if (w.may_rewind(fault)) fault = w.rewind(block, fault, &trial);
     if (w.stage_state == Workspace::Stage::kNeedsAhead) return {PlanStatus::kNoRoom, {}, 0, {}};
     if (fault.kind != PathFault::Kind::kNone) {
       w.refuse(block, code_of(fault.kind), fault.joint, fault.value);

@@ -42,8 +42,8 @@ bool is_finite(const ClBlock& block) noexcept {
 
 }  // namespace
 
-bool RestToRestPlanner::Workspace::may_unwind(const PathFault& fault) const noexcept {
-  return model.unwind_policy == UnwindPolicy::kRetract && fault.kind == PathFault::Kind::kTravel &&
+bool RestToRestPlanner::Workspace::may_rewind(const PathFault& fault) const noexcept {
+  return model.rewind_policy == RewindPolicy::kRetract && fault.kind == PathFault::Kind::kTravel &&
          fault.joint >= 0 && fault.joint == redundant_joint(model);
 }
 
@@ -59,13 +59,13 @@ PathFault RestToRestPlanner::Workspace::rewind(const ClBlock& block, const PathF
     if (!is_fault(router.rewind(block, one.target, next, staging))) {
       ++next.window;
       const RewindTarget& to = one.target;
-      result.unwinding = {block.sequence,
-                          block.line,
-                          static_cast<std::int16_t>(to.turns),
-                          static_cast<std::int16_t>(fault.joint),
-                          from,
-                          to.joints[redundant_joint(model)] - from,
-                          model.unwind_retract_mm};
+      result.rewind = {block.sequence,
+                       block.line,
+                       static_cast<std::int16_t>(to.turns),
+                       static_cast<std::int16_t>(fault.joint),
+                       from,
+                       to.joints[redundant_joint(model)] - from,
+                       model.rewind_retract_mm};
       if (trial != nullptr) return {};
       const PathFault behind = router.route(block, next, staging);
       if (awaits_blocks()) return {};
@@ -77,7 +77,7 @@ PathFault RestToRestPlanner::Workspace::rewind(const ClBlock& block, const PathF
     next = rest;
     staging.go_back(mark);
   }
-  result.unwinding = {};
+  result.rewind = {};
   return fault;
 }
 
@@ -92,7 +92,7 @@ PathFault RestToRestPlanner::Workspace::route_or_rewind(const ClBlock& block) no
   const PlanCursor rest = next;
   const Staging::Mark before = staging.mark();
   const PathFault fault = route(block);
-  if (stage_state == Stage::kNeedsAhead || !may_unwind(fault)) return fault;
+  if (stage_state == Stage::kNeedsAhead || !may_rewind(fault)) return fault;
   staging.go_back(before);
   next = rest;
   return rewind(block, fault, nullptr);
@@ -143,7 +143,7 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
     if (!find_great_circle(next.pose.axis, to_vector(block.axis)).is_unique) {
       return refuse(block, RejectCode::kAxisReversal, -1, 0);
     }
-    fault = model.unwind_policy == UnwindPolicy::kRetract ? route_or_rewind(block) : route(block);
+    fault = model.rewind_policy == RewindPolicy::kRetract ? route_or_rewind(block) : route(block);
     if (stage_state == Stage::kNeedsAhead) return;
     result.axis_deviation_rad = std::max(result.axis_deviation_rad, router.axis_deviation_rad());
   }

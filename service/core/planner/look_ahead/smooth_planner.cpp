@@ -126,7 +126,7 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
     if (result.status == PlanStatus::kRefused) {
       w.refuse(result);
     } else if (result.status == PlanStatus::kOk) {
-      w.note(result.unwinding);
+      w.note(result.rewind);
       w.pose = w.plain.junction().pose;
       w.joints = w.plain.joints();
       if (result.axis_deviation_rad > 0) {
@@ -159,8 +159,8 @@ bool SmoothPlanner::take_approach(Approach& out) noexcept {
   return workspace_->plain.take_approach(out);
 }
 
-bool SmoothPlanner::take_unwinding(Unwinding& out) noexcept {
-  return workspace_->unwindings.take_oldest(out);
+bool SmoothPlanner::take_rewind(Rewind& out) noexcept {
+  return workspace_->rewinds.take_oldest(out);
 }
 
 bool SmoothPlanner::take_ease(PoleEase& out) noexcept {

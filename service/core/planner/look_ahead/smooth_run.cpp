@@ -47,7 +47,7 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
   begin_feed(start.branch);
   ends_.clear();
   const int free = redundant_joint(model_);
-  follows_free_ = model_.unwind_policy == UnwindPolicy::kRetract && free >= 0 &&
+  follows_free_ = model_.rewind_policy == RewindPolicy::kRetract && free >= 0 &&
                   !model_.joints[free].is_endless;
   ease_.reset();
   is_band_finished_ = false;
@@ -82,7 +82,7 @@ void SmoothRun::go_on(const RewindTarget& target, std::uint64_t path_index,
   start_.path_index = path_index;
   start_.window = window;
   begin_feed(held_.branch);
-  supply_ = Supply::kUnwound;
+  supply_ = Supply::kRewound;
 }
 
 bool SmoothRun::fits(const RewindTarget& target) const noexcept {
@@ -127,7 +127,7 @@ SmoothRun::Status SmoothRun::publish_window(MotionWriter& writer) noexcept {
     }
     const Status status = prepare(writer.feed_override());
     if (has_window_) continue;
-    const bool is_end = status == Status::kDone || status == Status::kUnwind;
+    const bool is_end = status == Status::kDone || status == Status::kRewind;
     return is_end && !is_end_certain(writer) ? Status::kNoRoom : status;
   }
 }
@@ -149,14 +149,14 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
       fail_on_span();
       continue;
     }
-    const bool is_at_unwinding = supply_ == Supply::kHeld;
+    const bool is_at_rewind = supply_ == Supply::kHeld;
     if (is_feed_finished() && feed_.is_done()) {
       if (has_fault()) return Status::kFailed;
-      return is_at_unwinding ? Status::kUnwind : Status::kDone;
+      return is_at_rewind ? Status::kRewind : Status::kDone;
     }
-    if (is_at_unwinding) return Status::kNoRoom;  // every cell is there: windows go on coming
+    if (is_at_rewind) return Status::kNoRoom;  // every cell is there: windows go on coming
     if (!feed_.has_room()) return Status::kNeedsBlocks;
-    if (const JointSpan* span = supply_ == Supply::kUnwound ? &held_ : next_span()) {
+    if (const JointSpan* span = supply_ == Supply::kRewound ? &held_ : next_span()) {
       if (!(span->band.length > 0)) continue;
       if (!take_span(*span, feed_override)) return Status::kFailed;
     } else if (band_.has_failed() || corridor_.has_failed()) {
@@ -176,11 +176,11 @@ bool SmoothRun::take_span(const JointSpan& span, double feed_override) noexcept 
   if (!follows_free_ || follow(span)) {
     note_ease(&span);
     push(span, feed_override);
-    if (supply_ == Supply::kUnwound) supply_ = Supply::kFlowing;
+    if (supply_ == Supply::kRewound) supply_ = Supply::kFlowing;
     return true;
   }
-  if (supply_ == Supply::kUnwound) {
-    fail({PathFault::Kind::kTravel, unwind_at_.joint, unwind_at_.value}, span.band.sequence,
+  if (supply_ == Supply::kRewound) {
+    fail({PathFault::Kind::kTravel, rewind_at_.joint, rewind_at_.value}, span.band.sequence,
          span.band.line);
     return false;
   }
@@ -236,7 +236,7 @@ void SmoothRun::mark_block_ends(JointSpan& span) noexcept {
 bool SmoothRun::follow(const JointSpan& span) noexcept {
   const auto outside = travel_.follow(span);
   if (outside) {
-    unwind_at_ = {span.band.sequence, span.band.line, RejectCode::kTravelBetween,
+    rewind_at_ = {span.band.sequence, span.band.line, RejectCode::kTravelBetween,
                   redundant_joint(model_), *outside};
   }
   return !outside;

@@ -10,7 +10,7 @@
 #include "meridian/path/block_reject.hpp"
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/pole_ease.hpp"
-#include "meridian/planner/unwinding.hpp"
+#include "meridian/planner/rewind.hpp"
 #include "service/core/path/index_ring.hpp"
 #include "service/core/planner/feed/feed_raise.hpp"
 #include "service/core/planner/feed/feed_stop_margin.hpp"
@@ -45,7 +45,7 @@ class SmoothRun : public RewindTrial {
     kNoRoom,       ///< the port is full, or the cycle may yet run a tail instead of the end: call
                    ///< again
     kDone,         ///< finish() was called and everything is published
-    kUnwind,       ///< published to a rest at which a rewind is needed: see unwind_at(), then
+    kRewind,       ///< published to a rest at which a rewind is needed: see rewind_at(), then
                    ///< go_on()
     kFailed        ///< fault() says why; what lies ahead of it is published to its end
   };
@@ -77,11 +77,11 @@ class SmoothRun : public RewindTrial {
   [[nodiscard]] const BlockReject& faulty_block() const noexcept { return faulty_block_; }
 
   /// Where the redundant joint runs out of travel: the block, and `value` outside travel.
-  [[nodiscard]] const BlockReject& unwind_at() const noexcept { return unwind_at_; }
-  /// Behind kUnwind: whether the span that would have left travel fits after a rewind to `target`,
+  [[nodiscard]] const BlockReject& rewind_at() const noexcept { return rewind_at_; }
+  /// Behind kRewind: whether the span that would have left travel fits after a rewind to `target`,
   /// with the rest of a zone that it lies in.
   [[nodiscard]] bool fits(const RewindTarget& target) const noexcept override;
-  /// Behind kUnwind: the machine was taken to `target`, where it rests now; the names are those of
+  /// Behind kRewind: the machine was taken to `target`, where it rests now; the names are those of
   /// what follows.
   void go_on(const RewindTarget& target, std::uint64_t path_index, std::uint32_t window) noexcept;
 
@@ -99,8 +99,8 @@ class SmoothRun : public RewindTrial {
   /// Where the spans of the feed come from.
   enum class Supply : std::uint8_t {
     kFlowing,  ///< from the band, one after the other
-    kHeld,     ///< held_ waits for an unwinding: the feed ends ahead of it
-    kUnwound,  ///< held_ is next, and nothing was taken since the unwinding
+    kHeld,     ///< held_ waits for a rewind: the feed ends ahead of it
+    kRewound,  ///< held_ is next, and nothing was taken since the rewind
     kEnded     ///< no more come: the path ends, or a fault lies ahead
   };
 
@@ -111,7 +111,7 @@ class SmoothRun : public RewindTrial {
   };
 
   [[nodiscard]] Status prepare(double feed_override) noexcept;
-  /// Takes the next span that joints follow, or holds it for an unwinding. False: it leaves travel
+  /// Takes the next span that joints follow, or holds it for a rewind. False: it leaves travel
   /// behind one too, and fault() says so.
   [[nodiscard]] bool take_span(const JointSpan& span, double feed_override) noexcept;
   /// Gives the next span to the feed, with the factors that hold for it.
@@ -125,7 +125,7 @@ class SmoothRun : public RewindTrial {
   /// Marks the ends of blocks on `span`, the next one.
   void mark_block_ends(JointSpan& span) noexcept;
   /// Follows the redundant joint over `span`, the next one. False: it would leave its travel, and
-  /// unwind_at() names where; nothing is followed then.
+  /// rewind_at() names where; nothing is followed then.
   [[nodiscard]] bool follow(const JointSpan& span) noexcept;
   /// Whether the feed knows its end.
   [[nodiscard]] bool is_feed_finished() const noexcept {
@@ -170,7 +170,7 @@ class SmoothRun : public RewindTrial {
   bool follows_free_ = false;  ///< the redundant joint has travel and may be turned back
   Supply supply_ = Supply::kFlowing;
   JointSpan held_;
-  BlockReject unwind_at_;
+  BlockReject rewind_at_;
   std::optional<PoleEase> ease_;  ///< going on
   IndexRing<PoleEase> eases_;
   PathFault fault_;

@@ -145,8 +145,8 @@ void SmoothPlanner::Workspace::end_run() noexcept {
 SmoothRun::Status SmoothPlanner::Workspace::publish(MotionWriter& writer) noexcept {
   for (;;) {
     const SmoothRun::Status status = run.publish(writer);
-    if (status == SmoothRun::Status::kUnwind) {
-      if (!refusal && unwind(writer)) continue;
+    if (status == SmoothRun::Status::kRewind) {
+      if (!refusal && rewind(writer)) continue;
       return refusal ? SmoothRun::Status::kFailed : SmoothRun::Status::kNoRoom;
     }
     if (run.has_fault() && !refusal) {
@@ -158,7 +158,7 @@ SmoothRun::Status SmoothPlanner::Workspace::publish(MotionWriter& writer) noexce
   }
 }
 
-bool SmoothPlanner::Workspace::unwind(MotionWriter& writer) noexcept {
+bool SmoothPlanner::Workspace::rewind(MotionWriter& writer) noexcept {
   if (awaits_ahead()) return false;
   RestToRestPlanner::Junction at = plain.junction();
   at.joints = run.joints();
@@ -166,23 +166,23 @@ bool SmoothPlanner::Workspace::unwind(MotionWriter& writer) noexcept {
   at.path_index = run.next_path_index();
   at.window = run.next_window();
   plain.continue_at(at);
-  const BlockReject& where = run.unwind_at();
+  const BlockReject& where = run.rewind_at();
   ClBlock block;
   block.sequence = where.sequence;
   block.line = where.line;
-  const PlanResult result = plain.unwind(block, where.value, run, writer);
+  const PlanResult result = plain.rewind(block, where.value, run, writer);
   if (result.status == PlanStatus::kRefused) refuse(result);
   if (result.status != PlanStatus::kOk) return false;
-  note(result.unwinding);
+  note(result.rewind);
   const RestToRestPlanner::Junction behind = plain.junction();
-  const RewindTarget to{behind.joints, result.unwinding.turns, find_branch(behind)};
+  const RewindTarget to{behind.joints, result.rewind.turns, find_branch(behind)};
   run.go_on(to, behind.path_index, behind.window);
   return true;
 }
 
-void SmoothPlanner::Workspace::note(const Unwinding& unwinding) noexcept {
-  if (!unwinding.is_made()) return;
-  unwindings.push_over_oldest(unwinding);
+void SmoothPlanner::Workspace::note(const Rewind& rewind) noexcept {
+  if (!rewind.is_made()) return;
+  rewinds.push_over_oldest(rewind);
 }
 
 }  // namespace meridian

@@ -27,7 +27,7 @@ namespace meridian {
 /// turns: which block may be run on through, where a run begins and ends, and what is done at rest
 /// between. Memory: all of it at the start. Units: mm, rad, s.
 struct SmoothPlanner::Workspace {
-  static constexpr std::size_t kUnwindings = 256;  ///< that wait to be taken; the oldest go
+  static constexpr std::size_t kMaxRewinds = 256;  ///< that wait to be taken; the oldest go
   static constexpr std::size_t kEases = 256;       ///< the same
 
   /// Which blocks come.
@@ -56,7 +56,7 @@ struct SmoothPlanner::Workspace {
         window(m, has_branches(m)),
         run(m, raise, has_branches(m) ? &window : nullptr),
         plain_eases(kEases),
-        unwindings(kUnwindings) {
+        rewinds(kMaxRewinds) {
     if (has_branches(m)) plain.ask(&window);
   }
 
@@ -92,8 +92,8 @@ struct SmoothPlanner::Workspace {
   [[nodiscard]] SmoothRun::Status publish(MotionWriter& writer) noexcept;
   /// Turns the redundant joint back at the rest that the run came to; false: no room in the port,
   /// blocks ahead are missing, or refused.
-  [[nodiscard]] bool unwind(MotionWriter& writer) noexcept;
-  void note(const Unwinding& unwinding) noexcept;
+  [[nodiscard]] bool rewind(MotionWriter& writer) noexcept;
+  void note(const Rewind& rewind) noexcept;
   /// The program begins with what waits; `is_late`: because no more came for too long.
   void end_look(bool is_late) noexcept {
     if (!is_looking()) return;
@@ -138,7 +138,7 @@ struct SmoothPlanner::Workspace {
   Decided decided = Decided::kNothing;
   std::optional<PlanResult> refusal;  ///< the program cannot go on
   IndexRing<PoleEase> plain_eases;    ///< of blocks from rest to rest
-  IndexRing<Unwinding> unwindings;
+  IndexRing<Rewind> rewinds;
   std::size_t looked_at = 0;        ///< blocks of the begin
   std::uint64_t replayed_look = 0;  ///< blocks that a run before was begun with; 0: none was
 };

@@ -125,8 +125,8 @@ void AheadFollower::check(const ToolPose& pose, AheadWay& way) const noexcept {
     if (has_boxes(model_) && is_tool_known_ && is_at_box(all)) way.end = AheadEnd::kDoubt;
     return;
   }
-  way.end = may_rewind(joint, pose) ? AheadEnd::kUnwinds : AheadEnd::kDoubt;
-  if (way.end == AheadEnd::kUnwinds) return;
+  way.end = may_rewind(joint, pose) ? AheadEnd::kRewinds : AheadEnd::kDoubt;
+  if (way.end == AheadEnd::kRewinds) return;
   const double value = limited_value(model_, all, joint);
   const JointLimits& limits = limited_spec(model_, joint).limits;
   const double beyond = std::max(value - limits.travel_max, limits.travel_min - value);
@@ -136,7 +136,7 @@ void AheadFollower::check(const ToolPose& pose, AheadWay& way) const noexcept {
 }
 
 bool AheadFollower::may_rewind(int joint, const ToolPose& pose) const noexcept {
-  if (model_.unwind_policy != UnwindPolicy::kRetract || joint != free_) return false;
+  if (model_.rewind_policy != RewindPolicy::kRetract || joint != free_) return false;
   const JointLimits& limits = model_.joints[free_].limits;
   if (limits.travel_max - limits.travel_min >= kTurn_rad) return true;
   auto other = solve(model_, tool_length_mm_, pose, branch_ == 0 ? 1 : 0, joints_);

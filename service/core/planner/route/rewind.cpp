@@ -110,8 +110,8 @@ void Router::look_behind_rewind(const ClBlock& block, const RewindCause& cause,
 
 PathFault Router::rewind(const ClBlock& block, const RewindTarget& target, PlanCursor& cursor,
                          Staging& out) noexcept {
-  const double off = model_.unwind_retract_mm;
-  const Job job{block, MotionKind::kUnwind, model_.approach_feed_mm_per_s, 0};
+  const double off = model_.rewind_retract_mm;
+  const Job job{block, MotionKind::kRewind, model_.approach_feed_mm_per_s, 0};
   Job rapid = job;
   rapid.feed_mm_per_s = 0;
   if (find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, off) < off) {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "meridian/planner/unwinding.hpp"
+#include "meridian/planner/rewind.hpp"
 #include "service/core/planner/route/ahead_way.hpp"
 
 namespace meridian {

@@ -119,7 +119,7 @@ PathFault Router::run(const PathPiece& path, const Job& job, double share, PlanC
   leg.path.sequence = job.block.sequence;
   leg.path.line = job.block.line;
   leg.path.epoch = cursor.epoch;
-  const bool is_pole_turn = path.kind == PathKind::kTurn && job.motion != MotionKind::kUnwind;
+  const bool is_pole_turn = path.kind == PathKind::kTurn && job.motion != MotionKind::kRewind;
   leg.path.motion = is_pole_turn ? MotionKind::kPoleTurn : job.motion;
   leg.path.tool_length_mm = cursor.tool_length_mm;
   leg.feed_mm_per_s = job.feed_mm_per_s;

@@ -95,7 +95,7 @@ class Router {
   [[nodiscard]] RewindSolutions find_rewinds(const ClBlock& block, const RewindCause& cause,
                                              const PlanCursor& cursor) noexcept;
   /// Turns to `target` off the part and comes back to where the tool rests, as
-  /// UnwindPolicy::kRetract says, in the name of `block`, which would leave travel. A fault: there
+  /// RewindPolicy::kRetract says, in the name of `block`, which would leave travel. A fault: there
   /// is no room for it.
   [[nodiscard]] PathFault rewind(const ClBlock& block, const RewindTarget& target,
                                  PlanCursor& cursor, Staging& out) noexcept;

@@ -148,8 +148,8 @@ double PassFit::inside_travel(int joint, double value) const noexcept {
   const JointSpec& spec = task_.model.joints[static_cast<std::size_t>(joint)];
   return is_inside_travel(spec, value, kTravelMargin)
              ? value
-             : unwind_inside(value, value, spec.limits.travel_min, spec.limits.travel_max,
-                             kTravelMargin);
+             : nearest_winding_inside(value, value, spec.limits.travel_min, spec.limits.travel_max,
+                                      kTravelMargin);
 }
 
 bool PassFit::follow(const Stretch& way, JointVector& joints) const noexcept {

@@ -66,7 +66,7 @@ void PoleString::find_best() noexcept {
     (void)find_best({true, blocks});
   }
   if (best_time_ < kNoTime) return;
-  if (!find_best({true, 0})) (void)find_best({});  // an unwinding may help
+  if (!find_best({true, 0})) (void)find_best({});  // a rewind may help
 }
 
 /// Leaves no pieces where the exact way is the best. False: no way leads on.

@@ -12,8 +12,8 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/recording/record/check/joint_check.hpp"
 #include "service/recording/record/check/path_check.hpp"
+#include "service/recording/record/check/rewind_check.hpp"
 #include "service/recording/record/check/tip_box_check.hpp"
-#include "service/recording/record/check/unwind_check.hpp"
 
 namespace meridian::record {
 namespace {
@@ -225,7 +225,7 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
 
   JointCheck joints(model, survey.largest(), options.soft_limits);
   PathCheck tool(model, path, options);
-  UnwindCheck unwinding(model, path, options);
+  RewindCheck rewind(model, path, options);
   TipBoxCheck tip_box(model, path, options.soft_limits);
   const bool has_cut = survey.has_cut(options);
   std::uint64_t next_cycle = report.begin_cycle, missing = 0;
@@ -237,7 +237,7 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
       if ((row.flags & kSetpointDryEnabled) != 0) ++report.dry_cut_cycles;
       missing += row.cycle > next_cycle ? row.cycle - next_cycle : 0;
       next_cycle = row.cycle + 1;
-      if (unwinding.add(row)) return;
+      if (rewind.add(row)) return;
       tool.add(row, missing);
       missing = 0;
     }
@@ -245,7 +245,7 @@ Expected<CheckReport, RecordError> check(RecordingReader& recording, const Check
   if (!read) return tl::make_unexpected(std::move(read.error()));
   if (has_cut) {
     tool.finish(report);
-    unwinding.finish(report);
+    rewind.finish(report);
   }
   joints.finish(report);
   tip_box.finish(report);

@@ -79,8 +79,8 @@ std::string_view word(Finding::Kind kind) noexcept {
       return "sent_velocity";
     case Finding::Kind::kStage:
       return "stage";
-    case Finding::Kind::kUnwinding:
-      return "unwinding";
+    case Finding::Kind::kRewind:
+      return "rewind";
     case Finding::Kind::kDryAndFollowed:
       return "dry_and_followed";
   }
@@ -120,8 +120,8 @@ std::string to_text(const CheckReport& report) {
     if (report.vertices_in_gaps > 0) {
       append(text, ", %llu after missing cycles", static_cast<Count>(report.vertices_in_gaps));
     }
-    if (report.unwindings > 0) {
-      append(text, "\nunwound    %llu times, off the part", static_cast<Count>(report.unwindings));
+    if (report.rewinds > 0) {
+      append(text, "\nrewound    %llu times, off the part", static_cast<Count>(report.rewinds));
     }
     append(text, "\nfeed       %.6f x the programmed feed (%s), tip speed up to %.3f mm/min\n",
            report.feed.value, location(report.feed).c_str(),
@@ -179,7 +179,7 @@ std::string to_json(const CheckReport& report) {
   append_peak(text, "tip_between_mm", report.tip_between_mm);
   append_peak(text, "axis_deg", report.axis_rad, units::deg_from_rad(1.0));
   append_peak(text, "axis_between_deg", report.axis_between_rad, units::deg_from_rad(1.0));
-  append(text, "  \"unwindings\": %llu,\n", static_cast<Count>(report.unwindings));
+  append(text, "  \"rewinds\": %llu,\n", static_cast<Count>(report.rewinds));
   append(text, "  \"vertices\": %llu,\n  \"vertices_in_gaps\": %llu,\n",
          static_cast<Count>(report.vertices), static_cast<Count>(report.vertices_in_gaps));
   append_peak(text, "vertex_mm", report.vertex_mm);

@@ -69,7 +69,7 @@ struct Finding {
     kTravel,
     kSentVelocity,
     kStage,
-    kUnwinding,
+    kRewind,
     kDryAndFollowed
   };
   Kind kind{};
@@ -98,8 +98,8 @@ struct CheckReport {
   Peak tip_between_mm, axis_between_rad;  ///< at three places between neighbouring setpoints
   Peak vertex_mm;                         ///< `line`: of the block that ends there
   std::uint64_t vertices = 0, vertices_in_gaps = 0;
-  std::uint64_t unwindings = 0;  ///< turns of the redundant joint off the part
-  Peak feed;                     ///< tip speed / programmed feed
+  std::uint64_t rewinds = 0;  ///< turns of the redundant joint off the part
+  Peak feed;                  ///< tip speed / programmed feed
   Peak tip_speed_mm_per_s;
   Peak sent_velocity;  ///< error of the velocity columns / what the jerk limit allows
   std::uint64_t fault_stop_cycles = 0;

@@ -24,7 +24,7 @@ class PathCheck {
   PathCheck(const MachineModel& model, const CheckedPath& path, const CheckOptions& options);
 
   /// `missing`: cycles before this row that have no row. Rows off the path, as while the free joint
-  /// is unwound, are left out and not missing.
+  /// is rewound, are left out and not missing.
   void add(const RecordingRow& row, std::uint64_t missing);
   /// Checks what is left and adds what was found to the report.
   void finish(CheckReport& report);

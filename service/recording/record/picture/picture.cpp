@@ -36,11 +36,11 @@ void print(std::FILE* out, const Extremes& value, double scale) {
   return std::max(std::abs(rate.low), std::abs(rate.high));
 }
 
-/// Ranges of the program's tip path, approach and unwindings left out.
+/// Ranges of the program's tip path, approach and rewinds left out.
 [[nodiscard]] std::array<Extremes, 3> box_of(const PictureData& data) {
   std::array<Extremes, 3> box;
   for (const PictureData::Point& point : data.tip) {
-    if (point.kind == MotionKind::kApproach || point.kind == MotionKind::kUnwind) continue;
+    if (point.kind == MotionKind::kApproach || point.kind == MotionKind::kRewind) continue;
     for (int i = 0; i < 3; ++i) box[static_cast<std::size_t>(i)].add(point.tip[i]);
   }
   return box;

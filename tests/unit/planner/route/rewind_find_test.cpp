@@ -233,7 +233,7 @@ TEST(Rewinds, FollowTheBlocksThatTheRouterLooksAtWhereNobodyElseDoes) {
 
 TEST(Rewinds, ToTheOtherBranchTurnOnThePoleOffThePart) {
   MachineModel model = lai_machine();
-  model.unwind_retract_mm = 30;
+  model.rewind_retract_mm = 30;
   Found with(model);
   const auto found = with.find();
   int others = 0;
@@ -251,7 +251,7 @@ TEST(Rewinds, ToTheOtherBranchTurnOnThePoleOffThePart) {
     EXPECT_NEAR(std::abs(paths[1].joints_end[4]), 0, 1e-9) << "the axis goes to the pole";
     EXPECT_EQ(paths[2].kind, PathKind::kTurn);
     EXPECT_NEAR((to_vector(paths[4].tip_delta) + 30 * tilted(0.3, 0.4)).norm(), 0, 1e-9);
-    for (const PathPiece& path : paths) EXPECT_EQ(path.motion, MotionKind::kUnwind);
+    for (const PathPiece& path : paths) EXPECT_EQ(path.motion, MotionKind::kRewind);
     for (int i = 0; i < 5; ++i) EXPECT_NEAR(one.cursor.joints[i], s.target.joints[i], 1e-7) << i;
     EXPECT_EQ(one.cursor.pose.tip, Vector3::Zero());
     EXPECT_EQ(one.router.axis_deviation_rad(), 0) << "nothing of it is on the part";

@@ -19,7 +19,7 @@ namespace {
 TEST(Rewind, TurnsTheRedundantJointOffThePartAndComesBack) {
   for (const int turns : {-1, 1}) {
     MachineModel model = lai_machine();
-    model.unwind_retract_mm = 30;
+    model.rewind_retract_mm = 30;
     Approached one(model);
     ASSERT_FALSE(is_fault(one.router.rewind(cut({0, 0, 0}, tilted(0.3, 0.4)), {one.start, turns},
                                             one.cursor, *one.staged)));
@@ -29,7 +29,7 @@ TEST(Rewind, TurnsTheRedundantJointOffThePartAndComesBack) {
     EXPECT_EQ(paths[1].kind, PathKind::kJoint);
     EXPECT_NEAR(paths[1].joints_end[3] - paths[1].joints_begin[3], turns * kTurn_rad, kRounding);
     EXPECT_NEAR((to_vector(paths[2].tip_delta) + 30 * tilted(0.3, 0.4)).norm(), 0, kRounding);
-    for (const PathPiece& path : paths) EXPECT_EQ(path.motion, MotionKind::kUnwind);
+    for (const PathPiece& path : paths) EXPECT_EQ(path.motion, MotionKind::kRewind);
     for (int i = 0; i < 5; ++i) {
       EXPECT_NEAR(one.cursor.joints[i], one.start[i] + (i == 3 ? turns * kTurn_rad : 0), 1e-9);
     }
@@ -42,7 +42,7 @@ TEST(Rewind, TurnsTheRedundantJointOffThePartAndComesBack) {
 
 TEST(Rewind, IsRefusedWhereThereIsNoRoomForAllOfIt) {
   MachineModel model = lai_machine();
-  model.unwind_retract_mm = 30;
+  model.rewind_retract_mm = 30;
   Approached probe(model);
   ASSERT_FALSE(is_fault(probe.router.rewind(cut({0, 0, 0}, tilted(0.3, 0.4)), {probe.start, 1},
                                             probe.cursor, *probe.staged)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/record/check/unwind_check.hpp"
+#include "service/recording/record/check/rewind_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +11,11 @@
 
 namespace meridian::record {
 
-UnwindCheck::UnwindCheck(const MachineModel& model, const CheckedPath& path,
+RewindCheck::RewindCheck(const MachineModel& model, const CheckedPath& path,
                          const CheckOptions& options)
     : model_(model), tool_(path), options_(options), free_(redundant_joint(model)) {}
 
-void UnwindCheck::blame(const char* what, const RecordingRow& row) {
+void RewindCheck::blame(const char* what, const RecordingRow& row) {
   if (bad_++ > 0) return;
   what_ = what;
   bad_cycle_ = row.cycle;
@@ -23,24 +23,24 @@ void UnwindCheck::blame(const char* what, const RecordingRow& row) {
 }
 
 /// With the redundant joint where it was: what its turns do to the tool is no matter of the line.
-ToolPose UnwindCheck::held_pose(const RecordingRow& row) const {
+ToolPose RewindCheck::held_pose(const RecordingRow& row) const {
   JointVector held = row.joints;
   held[free_] = held_;
   return forward(model_, tool_length_, held);
 }
 
-bool UnwindCheck::is_on_line(const ToolPose& pose) const {
+bool RewindCheck::is_on_line(const ToolPose& pose) const {
   const Vector3 by = pose.tip - begin_.tip;
   return (by - by.dot(begin_.axis) * begin_.axis).norm() <= options_.tip_tolerance_mm &&
          angle_between(pose.axis, begin_.axis) <= options_.axis_tolerance_rad;
 }
 
-bool UnwindCheck::is_tilted(const ToolPose& pose) const {
+bool RewindCheck::is_tilted(const ToolPose& pose) const {
   return is_on_line({pose.tip, begin_.axis}) &&
          is_towards_pole(model_, begin_.axis, pose.axis, options_.axis_tolerance_rad);
 }
 
-void UnwindCheck::begin(const RecordingRow& row) {
+void RewindCheck::begin(const RecordingRow& row) {
   ++count_;
   const std::uint64_t missing = has_last_ ? row.cycle - last_.cycle - 1 : kMaxMissing + 1;
   has_rest_ = missing <= kMaxMissing;
@@ -52,22 +52,22 @@ void UnwindCheck::begin(const RecordingRow& row) {
   rows_ = 0;
   has_turned_ = has_tilted_ = false;
   held_ = free_ >= 0 ? rest_[free_] : 0;
-  if (free_ < 0 || model_.unwind_policy != UnwindPolicy::kRetract) {
-    blame("the machine file has no unwinding", row);
+  if (free_ < 0 || model_.rewind_policy != RewindPolicy::kRetract) {
+    blame("the machine file has no rewind", row);
   }
 }
 
-void UnwindCheck::check_turn(double off, const RecordingRow& row) {
+void RewindCheck::check_turn(double off, const RecordingRow& row) {
   if (!has_turned_) top_ = off;
   has_turned_ = true;
-  if (off + slack_ < model_.unwind_retract_mm - options_.tip_tolerance_mm) {
+  if (off + slack_ < model_.rewind_retract_mm - options_.tip_tolerance_mm) {
     blame("the redundant joint turns before the tool is off the part", row);
   } else if (std::abs(off - top_) > options_.tip_tolerance_mm) {
     blame("the tool moves while the redundant joint turns", row);
   }
 }
 
-void UnwindCheck::check(const RecordingRow& row) {
+void RewindCheck::check(const RecordingRow& row) {
   const ToolPose there = forward(model_, tool_length_, row.joints);
   if (has_tilted_ && is_on_line(there)) held_ = row.joints[free_];  // on the other branch
   ToolPose pose = held_pose(row);
@@ -86,7 +86,7 @@ void UnwindCheck::check(const RecordingRow& row) {
 }
 
 /// `row` is the first behind it, last_ its last one.
-void UnwindCheck::end(const RecordingRow& row) {
+void RewindCheck::end(const RecordingRow& row) {
   const std::uint64_t missing = row.cycle - last_.cycle - 1;
   if (free_ < 0 || !has_rest_ || missing > kMaxMissing) return;
   const double slack = slack_ + static_cast<double>(missing) * step_;
@@ -96,25 +96,25 @@ void UnwindCheck::end(const RecordingRow& row) {
   if (!is_back) blame("the tool comes back to another place than it left", row);
 }
 
-bool UnwindCheck::add(const RecordingRow& row) {
-  const bool is_unwinding = row.kind == MotionKind::kUnwind;
-  if (is_unwinding) {
+bool RewindCheck::add(const RecordingRow& row) {
+  const bool is_rewind = row.kind == MotionKind::kRewind;
+  if (is_rewind) {
     if (!is_in_) begin(row);
     if (free_ >= 0) check(row);
   } else if (is_in_) {
     end(row);
   }
-  is_in_ = is_unwinding;
+  is_in_ = is_rewind;
   last_ = row;
   has_last_ = true;
-  return is_unwinding;
+  return is_rewind;
 }
 
-void UnwindCheck::finish(CheckReport& report) {
-  report.unwindings = count_;
+void RewindCheck::finish(CheckReport& report) {
+  report.rewinds = count_;
   if (bad_ == 0) return;
   report.findings.push_back(
-      {Finding::Kind::kUnwinding, std::string("unwinding: ") + what_, bad_cycle_, bad_line_, bad_});
+      {Finding::Kind::kRewind, std::string("rewind: ") + what_, bad_cycle_, bad_line_, bad_});
 }
 
 }  // namespace meridian::record

@@ -26,8 +26,8 @@ MachineModel short_travel() {
   MachineModel model = test::lai_machine();
   model.joints[3].limits.travel_min = units::rad_from_deg(-250);
   model.joints[3].limits.travel_max = units::rad_from_deg(250);
-  model.unwind_policy = UnwindPolicy::kRetract;
-  model.unwind_retract_mm = 20;
+  model.rewind_policy = RewindPolicy::kRetract;
+  model.rewind_retract_mm = 20;
   return model;
 }
 
@@ -45,9 +45,9 @@ std::string spiral(int blocks) {
   return text + "FINI\n";
 }
 
-class SimulatedUnwinding : public ::testing::TestWithParam<Transition> {
+class SimulatedRewind : public ::testing::TestWithParam<Transition> {
  protected:
-  SimulatedUnwinding() { model.transition = GetParam(); }
+  SimulatedRewind() { model.transition = GetParam(); }
 
   [[nodiscard]] record::CheckReport check(const std::vector<CycleRecord>& records) {
     return test::check_records(records, test::path_of(text, model), model, {}, file.path());
@@ -56,13 +56,13 @@ class SimulatedUnwinding : public ::testing::TestWithParam<Transition> {
     return std::any_of(report.findings.begin(), report.findings.end(),
                        [kind](const Finding& finding) { return finding.kind == kind; });
   }
-  /// The record of an unwinding in which that joint is fastest.
+  /// The record of a rewind in which that joint is fastest.
   [[nodiscard]] static std::size_t find_in(const std::vector<CycleRecord>& records,
                                            std::size_t joint) {
     std::size_t best = 0;
     double max = 0;
     for (std::size_t n = 1; n < records.size(); ++n) {
-      if (records[n].motion != MotionKind::kUnwind) continue;
+      if (records[n].motion != MotionKind::kRewind) continue;
       const double moved = std::abs(records[n].joints[joint] - records[n - 1].joints[joint]);
       if (moved > max) {
         max = moved;
@@ -77,74 +77,73 @@ class SimulatedUnwinding : public ::testing::TestWithParam<Transition> {
   test::Scratch file{".csv"};
 };
 
-TEST_P(SimulatedUnwinding, PassesTheCheckAndIsReported) {
-  double unwinding_s = 0;
+TEST_P(SimulatedRewind, PassesTheCheckAndIsReported) {
+  double rewind_s = 0;
   Explainer explainer(model,
-                      [&unwinding_s](const ExplainedBlock& block) {
-                        unwinding_s += block.by_cause[static_cast<std::size_t>(Cause::kUnwinding)];
+                      [&rewind_s](const ExplainedBlock& block) {
+                        rewind_s += block.by_cause[static_cast<std::size_t>(Cause::kRewind)];
                       },
                       {});
   SimulateOptions options;
   options.explainer = &explainer;
   const test::SimulatedRun run = test::run_simulation(text, model, options);
   ASSERT_EQ(run.report.outcome, Outcome::kDone) << run.report.reason;
-  ASSERT_GE(run.report.unwinding_count, 1U);
+  ASSERT_GE(run.report.rewind_count, 1U);
   EXPECT_NE(to_text(run.report, model).find("would leave its travel"), std::string::npos);
   const record::CheckReport report = check(run.records);
   EXPECT_TRUE(report.passed()) << to_text(report);
-  EXPECT_EQ(report.unwindings, run.report.unwinding_count);
+  EXPECT_EQ(report.rewinds, run.report.rewind_count);
   const auto cycles =
       std::count_if(run.records.begin(), run.records.end(),
-                    [](const CycleRecord& record) { return record.motion == MotionKind::kUnwind; });
-  EXPECT_NEAR(unwinding_s, 1e-3 * static_cast<double>(cycles), 0.05);
+                    [](const CycleRecord& record) { return record.motion == MotionKind::kRewind; });
+  EXPECT_NEAR(rewind_s, 1e-3 * static_cast<double>(cycles), 0.05);
 }
 
-TEST_P(SimulatedUnwinding, IsFoundOutWhereItIsNoneOfTheDeclaredKind) {
+TEST_P(SimulatedRewind, IsFoundOutWhereItIsNoneOfTheDeclaredKind) {
   const test::SimulatedRun run = test::run_simulation(text, model);
   ASSERT_EQ(run.report.outcome, Outcome::kDone) << run.report.reason;
   auto sideways = run.records;
   sideways[find_in(run.records, kLift)].joints[0] += 0.5;
-  EXPECT_TRUE(has(check(sideways), Finding::Kind::kUnwinding)) << "off the line";
+  EXPECT_TRUE(has(check(sideways), Finding::Kind::kRewind)) << "off the line";
   auto with_c = run.records;
   with_c[find_in(run.records, kC)].joints[1] += 0.5;
-  EXPECT_TRUE(has(check(with_c), Finding::Kind::kUnwinding)) << "another joint moves with C";
-  model.unwind_retract_mm = 25;
-  EXPECT_TRUE(has(check(run.records), Finding::Kind::kUnwinding)) << "not off as far as declared";
-  model.unwind_policy = UnwindPolicy::kRefuse;
-  EXPECT_TRUE(has(check(run.records), Finding::Kind::kUnwinding)) << "not declared";
+  EXPECT_TRUE(has(check(with_c), Finding::Kind::kRewind)) << "another joint moves with C";
+  model.rewind_retract_mm = 25;
+  EXPECT_TRUE(has(check(run.records), Finding::Kind::kRewind)) << "not off as far as declared";
+  model.rewind_policy = RewindPolicy::kRefuse;
+  EXPECT_TRUE(has(check(run.records), Finding::Kind::kRewind)) << "not declared";
 }
 
-TEST_P(SimulatedUnwinding, ToTheOtherBranchIsFoundOutWhereItIsNoneOfTheDeclaredKind) {
+TEST_P(SimulatedRewind, ToTheOtherBranchIsFoundOutWhereItIsNoneOfTheDeclaredKind) {
   model.joints[kC].limits.travel_min = units::rad_from_deg(-200);
   model.joints[kC].limits.travel_max = units::rad_from_deg(200);
   text = spiral(155);
   const test::SimulatedRun run = test::run_simulation(text, model);
   ASSERT_EQ(run.report.outcome, Outcome::kDone) << run.report.reason;
-  ASSERT_EQ(run.report.unwindings.size(), 1U);
-  ASSERT_TRUE(run.report.unwindings[0].is_other_branch());
+  ASSERT_EQ(run.report.rewinds.size(), 1U);
+  ASSERT_TRUE(run.report.rewinds[0].is_other_branch());
   EXPECT_TRUE(check(run.records).passed()) << to_text(check(run.records));
   const std::size_t tilted = find_in(run.records, kTilt);
   auto sideways = run.records;
   sideways[tilted].joints[0] += 0.5;
-  EXPECT_TRUE(has(check(sideways), Finding::Kind::kUnwinding)) << "the tip moves on the way";
+  EXPECT_TRUE(has(check(sideways), Finding::Kind::kRewind)) << "the tip moves on the way";
   auto astray = run.records;
   astray[tilted].joints[kC] += 0.1;
-  EXPECT_TRUE(has(check(astray), Finding::Kind::kUnwinding))
-      << "the axis leaves the way to the pole";
-  model.unwind_retract_mm = 25;
-  EXPECT_TRUE(has(check(run.records), Finding::Kind::kUnwinding)) << "not off as far as declared";
+  EXPECT_TRUE(has(check(astray), Finding::Kind::kRewind)) << "the axis leaves the way to the pole";
+  model.rewind_retract_mm = 25;
+  EXPECT_TRUE(has(check(run.records), Finding::Kind::kRewind)) << "not off as far as declared";
 }
 
 /// A wire that lost two rows in the very moment in which the tool leaves, and where it comes back.
-TEST_P(SimulatedUnwinding, IsCheckedWhereRowsAreMissingAtItsEnds) {
+TEST_P(SimulatedRewind, IsCheckedWhereRowsAreMissingAtItsEnds) {
   const test::SimulatedRun run = test::run_simulation(text, model);
   ASSERT_EQ(run.report.outcome, Outcome::kDone) << run.report.reason;
-  const auto is_unwinding = [](const CycleRecord& record) {
-    return record.motion == MotionKind::kUnwind;
+  const auto is_rewind = [](const CycleRecord& record) {
+    return record.motion == MotionKind::kRewind;
   };
   auto records = run.records;
-  const auto first = std::find_if(records.begin(), records.end(), is_unwinding);
-  const auto after = std::find_if_not(first, records.end(), is_unwinding);
+  const auto first = std::find_if(records.begin(), records.end(), is_rewind);
+  const auto after = std::find_if_not(first, records.end(), is_rewind);
   records.erase(after - 1, after + 1);
   records.erase(first - 1, first + 1);
   record::CheckOptions options;
@@ -153,11 +152,11 @@ TEST_P(SimulatedUnwinding, IsCheckedWhereRowsAreMissingAtItsEnds) {
     return test::check_records(records, test::path_of(text, model), model, options, file.path());
   };
   EXPECT_TRUE(check().passed()) << to_text(check());
-  model.unwind_retract_mm = 20.1;
-  EXPECT_TRUE(has(check(), Finding::Kind::kUnwinding)) << "not off as far as declared";
+  model.rewind_retract_mm = 20.1;
+  EXPECT_TRUE(has(check(), Finding::Kind::kRewind)) << "not off as far as declared";
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, SimulatedUnwinding,
+INSTANTIATE_TEST_SUITE_P(Both, SimulatedRewind,
                          ::testing::Values(Transition::kExactStop, Transition::kSmooth),
                          [](const auto& which) {
                            return which.param == Transition::kSmooth ? "Smooth" : "ExactStop";

@@ -11,19 +11,19 @@
 #include "property/planner/winding_programs.hpp"
 
 /// Checks programs in which C comes to its end of travel.
-namespace meridian::test::unwind {
+namespace meridian::test::rewinds {
 
 inline constexpr double kLimit = 1 + 1e-6;
 
-/// An unwinding while its setpoints come: where the tool left, and how far it was off the part.
-struct OpenUnwinding {
+/// A rewind while its setpoints come: where the tool left, and how far it was off the part.
+struct OpenRewind {
   JointVector rest{};
   ToolPose begin{Vector3::Zero(), Vector3::UnitZ()};
   double farthest = 0;
 };
 
 /// C alone by whole turns, and only when the tool is off by the whole way.
-inline void check_turn_on_branch(const MachineModel& model, OpenUnwinding& open,
+inline void check_turn_on_branch(const MachineModel& model, OpenRewind& open,
                                  const JointVector& before, const JointVector& now) {
   const int free = redundant_joint(model);
   const ToolPose pose = forward(model, model.tool_length_mm, now);
@@ -45,7 +45,7 @@ inline void check_turn_on_branch(const MachineModel& model, OpenUnwinding& open,
 }
 
 /// The axis to the pole and back, the tip at rest where the tool is off by the whole way.
-inline void check_turn_to_other_branch(const MachineModel& model, OpenUnwinding& open,
+inline void check_turn_to_other_branch(const MachineModel& model, OpenRewind& open,
                                        const JointVector& now) {
   const ToolPose pose = forward(model, model.tool_length_mm, now);
   const double off = (pose.tip - open.begin.tip).dot(open.begin.axis);
@@ -63,56 +63,56 @@ inline void check_turn_to_other_branch(const MachineModel& model, OpenUnwinding&
 }
 
 /// The next setpoint is back where the tool left.
-inline void check_end(const MachineModel& model, const OpenUnwinding& open,
-                      const Unwinding& unwinding, const JointVector& now) {
+inline void check_end(const MachineModel& model, const OpenRewind& open, const Rewind& rewind,
+                      const JointVector& now) {
   const int free = redundant_joint(model);
   const ToolPose pose = forward(model, model.tool_length_mm, now);
   EXPECT_LT((pose.tip - open.begin.tip).norm(), 2e-2) << "not where it left";
   EXPECT_NEAR(open.farthest, kRetract_mm, 1e-3);
-  EXPECT_NEAR(now[free] - open.rest[free], unwinding.turn_rad, 1e-2);
-  if (unwinding.is_other_branch()) {
-    EXPECT_GT(std::abs(std::remainder(unwinding.turn_rad, kTurn_rad)), 1) << "no other branch";
+  EXPECT_NEAR(now[free] - open.rest[free], rewind.turn_rad, 1e-2);
+  if (rewind.is_other_branch()) {
+    EXPECT_GT(std::abs(std::remainder(rewind.turn_rad, kTurn_rad)), 1) << "no other branch";
   } else {
-    EXPECT_NEAR(unwinding.turn_rad, unwinding.turns * kTurn_rad, 1e-12);
-    EXPECT_NE(unwinding.turns, 0);
+    EXPECT_NEAR(rewind.turn_rad, rewind.turns * kTurn_rad, 1e-12);
+    EXPECT_NE(rewind.turns, 0);
   }
 }
 
-/// Checks what was made of `blocks`, the unwindings alone. Returns their number.
-inline int check_unwindings(const MachineModel& model, const SmoothTrace& trace,
-                            const std::vector<PlanSample>& setpoints) {
+/// Checks what was made of `blocks`, the rewinds alone. Returns their number.
+inline int check_rewinds(const MachineModel& model, const SmoothTrace& trace,
+                         const std::vector<PlanSample>& setpoints) {
   std::size_t count = 0;
   bool was_in = false;
-  OpenUnwinding open;
+  OpenRewind open;
   for (std::size_t n = 1; n < setpoints.size(); ++n) {
     const auto k = static_cast<std::size_t>(setpoints[n].piece);
     const JointVector &before = setpoints[n - 1].q, &now = setpoints[n].q;
     const bool is_in =
-        trace.times[k].kind == TimeKind::kMove && trace.paths[k].motion == MotionKind::kUnwind;
+        trace.times[k].kind == TimeKind::kMove && trace.paths[k].motion == MotionKind::kRewind;
     if (is_in && !was_in) {
       open = {before, forward(model, model.tool_length_mm, before), 0};
-      if (++count > trace.unwindings.size()) return static_cast<int>(count);
+      if (++count > trace.rewinds.size()) return static_cast<int>(count);
     }
-    if (is_in && trace.unwindings[count - 1].is_other_branch()) {
+    if (is_in && trace.rewinds[count - 1].is_other_branch()) {
       check_turn_to_other_branch(model, open, now);
     } else if (is_in) {
       check_turn_on_branch(model, open, before, now);
     } else if (was_in) {
-      check_end(model, open, trace.unwindings[count - 1], now);
+      check_end(model, open, trace.rewinds[count - 1], now);
     }
     was_in = is_in;
   }
   return static_cast<int>(count);
 }
 
-/// Of all programs that were checked: unwindings, and the most of the limits and in tolerances.
+/// Of all programs that were checked: rewinds, and the most of the limits and in tolerances.
 struct Found {
-  int unwindings = 0;
+  int rewinds = 0;
   double v = 0, a = 0, j = 0, off = 0;
 };
 
 /// Checks what was made of `blocks`: travel, limits, feed, the distance from the programmed path
-/// off approaches and unwindings, these by themselves, and that the program ends at its last cut.
+/// off approaches and rewinds, these by themselves, and that the program ends at its last cut.
 inline void check(const MachineModel& model, const SmoothTrace& trace,
                   const std::vector<ClBlock>& blocks, const JointVector& start, Found& found) {
   ASSERT_EQ(trace.last.status, PlanStatus::kOk)
@@ -129,16 +129,16 @@ inline void check(const MachineModel& model, const SmoothTrace& trace,
     const auto k = static_cast<std::size_t>(setpoints[n].piece);
     const PathPiece& path = trace.paths[k];
     if (n % 11 != 0 || trace.times[k].kind != TimeKind::kMove) continue;
-    if (path.motion == MotionKind::kApproach || path.motion == MotionKind::kUnwind) continue;
+    if (path.motion == MotionKind::kApproach || path.motion == MotionKind::kRewind) continue;
     const ToolPose pose = forward(model, path.tool_length_mm, setpoints[n].q);
     const double off = distance_from(ways, trace.times[k].sequence, pose, model.tolerances.tip_mm,
                                      model.tolerances.axis_rad);
     ASSERT_LE(off, kLimit) << "setpoint " << n << " block " << trace.times[k].sequence;
     found.off = std::max(found.off, off);
   }
-  const int unwindings = check_unwindings(model, trace, setpoints);
-  EXPECT_EQ(unwindings, static_cast<int>(trace.unwindings.size()));
-  found.unwindings += unwindings;
+  const int rewinds = check_rewinds(model, trace, setpoints);
+  EXPECT_EQ(rewinds, static_cast<int>(trace.rewinds.size()));
+  found.rewinds += rewinds;
   found.v = std::max(found.v, use.v);
   found.a = std::max(found.a, use.a);
   found.j = std::max(found.j, use.j);
@@ -146,4 +146,4 @@ inline void check(const MachineModel& model, const SmoothTrace& trace,
   EXPECT_LE((end.tip - to_vector(blocks[blocks.size() - 2].tip_mm)).norm(), 2e-6);
 }
 
-}  // namespace meridian::test::unwind
+}  // namespace meridian::test::rewinds

@@ -8,8 +8,8 @@
 namespace meridian {
 
 /// A rewind in the plan: a joint would have left its travel in a block, and the machine goes to
-/// another winding or branch ahead of it, off the part (UnwindPolicy::kRetract). Units: rad, mm.
-struct Unwinding {
+/// another winding or branch ahead of it, off the part (RewindPolicy::kRetract). Units: rad, mm.
+struct Rewind {
   std::uint64_t sequence = 0;  ///< block in which the travel would have ended
   std::uint32_t line = 0;      ///< its source line
   std::int16_t turns = 0;      ///< of the redundant joint on the branch in force; 0: to the other

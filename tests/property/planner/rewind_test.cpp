@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// Programs that turn C farther than its travel: what comes out of the port stays inside travel and
-/// limits, unwinds off the part alone, and cuts everything that is programmed.
+/// limits, rewinds off the part alone, and cuts everything that is programmed.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-#include "property/planner/checked_unwindings.hpp"
+#include "property/planner/checked_rewinds.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
 #include "support/draws.hpp"
@@ -20,7 +20,7 @@
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
 
-namespace meridian::test::unwind {
+namespace meridian::test::rewinds {
 namespace {
 
 std::vector<MachineModel> machines() {
@@ -66,16 +66,16 @@ std::vector<ClBlock> spiral(std::uint32_t seed, const Spiral& how) {
   return blocks;
 }
 
-constexpr std::uint32_t kPrograms = 1;  // longer runs: MERIDIAN_UNWIND_PROGRAMS
+constexpr std::uint32_t kPrograms = 1;  // longer runs: MERIDIAN_REWIND_PROGRAMS
 /// Beside the pole few programs are left that need a rewind.
 constexpr std::uint32_t kProgramsAtThePole = kIsTimed ? 3 : 1;
 
 void run_spirals(Transition transition, Spiral how) {
   const auto programs =
-      number_of("MERIDIAN_UNWIND_PROGRAMS", how.passes_pole ? kProgramsAtThePole : kPrograms);
-  const auto first = number_of("MERIDIAN_UNWIND_SEED", 1U);
+      number_of("MERIDIAN_REWIND_PROGRAMS", how.passes_pole ? kProgramsAtThePole : kPrograms);
+  const auto first = number_of("MERIDIAN_REWIND_SEED", 1U);
   std::uint32_t last = first + programs;
-  int unwindings = 0;
+  int rewinds = 0;
   auto all = machines();
   if (!kIsTimed) all.resize(1);  // the slow build sees the same code
   for (const MachineModel& model : all) {
@@ -91,29 +91,29 @@ void run_spirals(Transition transition, Spiral how) {
       check(model, plan_smooth(model, blocks, start, settings, true), blocks, start, found);
       if (testing::Test::HasFatalFailure()) return;
     }
-    std::printf("%s: %d unwindings, v %.4f a %.4f j %.4f of the limits, %.3f tolerances\n",
-                model.name.c_str(), found.unwindings, found.v, found.a, found.j, found.off);
-    unwindings += found.unwindings;
+    std::printf("%s: %d rewinds, v %.4f a %.4f j %.4f of the limits, %.3f tolerances\n",
+                model.name.c_str(), found.rewinds, found.v, found.a, found.j, found.off);
+    rewinds += found.rewinds;
     last += programs;  // every machine its own
   }
   if (kIsTimed) {  // else so few are drawn that the look past the pole may spare them all
-    EXPECT_GT(unwindings, 1);
+    EXPECT_GT(rewinds, 1);
   }
 }
 
-TEST(Unwinding, KeepsTravelAndLimitsOnSpiralsFromRestToRest) {
+TEST(Rewind, KeepsTravelAndLimitsOnSpiralsFromRestToRest) {
   run_spirals(Transition::kExactStop, {0, 25, false, false});
 }
 
-TEST(Unwinding, KeepsTravelAndLimitsOnSmoothSpirals) {
+TEST(Rewind, KeepsTravelAndLimitsOnSmoothSpirals) {
   run_spirals(Transition::kSmooth, {0, 6, false, false});
 }
 
-TEST(Unwinding, KeepsTravelAndLimitsWherePathsPassThePole) {
+TEST(Rewind, KeepsTravelAndLimitsWherePathsPassThePole) {
   run_spirals(Transition::kSmooth, {0, 6, false, true});
 }
 
-TEST(Unwinding, IsTheSameHoweverTheBlocksArriveAndThePortIsRead) {
+TEST(Rewind, IsTheSameHoweverTheBlocksArriveAndThePortIsRead) {
   const MachineModel model = limited(lai_machine(), -200, 340);
   for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
     const auto blocks =
@@ -122,7 +122,7 @@ TEST(Unwinding, IsTheSameHoweverTheBlocksArriveAndThePortIsRead) {
     const SmoothSettings settings{transition, 0, 0};
     const SmoothTrace once = plan_smooth(model, blocks, start, settings, true);
     ASSERT_EQ(once.last.status, PlanStatus::kOk);
-    EXPECT_FALSE(once.unwindings.empty());
+    EXPECT_FALSE(once.rewinds.empty());
     for (const std::size_t every : {7U, 100000U}) {
       const SmoothTrace again = plan_smooth(
           model, blocks, start, settings, [every](std::size_t n) { return n % every == 0; },
@@ -132,7 +132,7 @@ TEST(Unwinding, IsTheSameHoweverTheBlocksArriveAndThePortIsRead) {
   }
 }
 
-TEST(Unwinding, IsRefusedWhereNoWindingCarriesTheBlock) {
+TEST(Rewind, IsRefusedWhereNoWindingCarriesTheBlock) {
   const MachineModel model =
       limited(lai_machine(), -80, 80);  // no other winding or branch inside travel
   for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
@@ -143,13 +143,13 @@ TEST(Unwinding, IsRefusedWhereNoWindingCarriesTheBlock) {
     EXPECT_EQ(trace.last.status, PlanStatus::kRefused);
     EXPECT_EQ(trace.last.reject.code, RejectCode::kTravelBetween);
     EXPECT_EQ(trace.last.reject.joint, redundant_joint(model));
-    EXPECT_TRUE(trace.unwindings.empty());
+    EXPECT_TRUE(trace.rewinds.empty());
   }
 }
 
-TEST(Unwinding, IsNotMadeWhereTheMachineFileDoesNotSayHow) {
+TEST(Rewind, IsNotMadeWhereTheMachineFileDoesNotSayHow) {
   MachineModel model = limited(lai_machine(), -720, 720);
-  model.unwind_policy = UnwindPolicy::kRefuse;
+  model.rewind_policy = RewindPolicy::kRefuse;
   const auto blocks = spiral(1, {7, 25, false, false});
   const JointVector start = joints_of(model, blocks[0]);
   const SmoothTrace trace = plan_smooth(model, blocks, start, {Transition::kExactStop, 0, 0}, true);
@@ -158,16 +158,16 @@ TEST(Unwinding, IsNotMadeWhereTheMachineFileDoesNotSayHow) {
   EXPECT_EQ(trace.last.reject.joint, redundant_joint(model));
 }
 
-TEST(Unwinding, IsRefusedWhereTheToolCannotLeaveThePartSoFar) {
+TEST(Rewind, IsRefusedWhereTheToolCannotLeaveThePartSoFar) {
   MachineModel model = limited(fork_machine(), -360, 360);
-  model.unwind_retract_mm = 1e4;  // farther than any slide goes
+  model.rewind_retract_mm = 1e4;  // farther than any slide goes
   const auto blocks = spiral(1, {7, 25, false, false});
   const JointVector start = joints_of(model, blocks[0]);
   const SmoothTrace trace = plan_smooth(model, blocks, start, {Transition::kExactStop, 0, 0}, true);
   EXPECT_EQ(trace.last.status, PlanStatus::kRefused);
   EXPECT_EQ(trace.last.reject.code, RejectCode::kTravelBetween);
-  for (const PathPiece& path : trace.paths) EXPECT_NE(path.motion, MotionKind::kUnwind);
+  for (const PathPiece& path : trace.paths) EXPECT_NE(path.motion, MotionKind::kRewind);
 }
 
 }  // namespace
-}  // namespace meridian::test::unwind
+}  // namespace meridian::test::rewinds

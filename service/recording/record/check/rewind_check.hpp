@@ -13,18 +13,18 @@ namespace meridian::record {
 /// part along its axis and comes back along the same line to where it left. When it is off by the
 /// whole declared way the redundant joint alone turns by whole turns; or the axis goes to the pole
 /// and back on another branch, with the tip at rest. Anything else is a finding, also any such row
-/// on a machine whose file has no unwinding.
+/// on a machine whose file has no rewind.
 ///
 /// The place where the tool rested is the row before. Where up to kMaxMissing rows are missing
 /// there, it is known to the way that the tool made meanwhile: from rest it grows faster, so less
 /// than the step seen next for every cycle; the same at the other end. Where more are missing the
 /// line alone is checked. Units: mm, rad. Frame: W.
-class UnwindCheck {
+class RewindCheck {
  public:
   /// Both tolerances of `options` are in force.
-  UnwindCheck(const MachineModel& model, const CheckedPath& path, const CheckOptions& options);
+  RewindCheck(const MachineModel& model, const CheckedPath& path, const CheckOptions& options);
 
-  /// Takes every row of the cut, in order. Returns whether it is one of an unwinding.
+  /// Takes every row of the cut, in order. Returns whether it is one of a rewind.
   bool add(const RecordingRow& row);
   void finish(CheckReport& report);
 
@@ -43,7 +43,7 @@ class UnwindCheck {
 
   const MachineModel& model_;
   LineTool tool_;
-  double tool_length_ = 0;  ///< of the unwinding
+  double tool_length_ = 0;  ///< of the rewind
   CheckOptions options_;
   int free_;
   RecordingRow last_;
@@ -57,7 +57,7 @@ class UnwindCheck {
   double missing_ = 0;                   ///< rows between rest and the first one
   double slack_ = 0;                     ///< of the place where the tool left, mm
   double off_ = 0, step_ = 0, top_ = 0;  ///< of the last row; per cycle; where the joint turns. mm
-  std::uint64_t rows_ = 0;               ///< of this unwinding
+  std::uint64_t rows_ = 0;               ///< of this rewind
   std::uint64_t count_ = 0, bad_ = 0;
   const char* what_ = "";
   std::uint64_t bad_cycle_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/// C comes to its end of travel on the way past the pole: an unwinding only where none of the ways
+/// C comes to its end of travel on the way past the pole: a rewind only where none of the ways
 /// past it does without.
 
 #include <gtest/gtest.h>
@@ -11,17 +11,17 @@
 #include <numbers>
 #include <vector>
 
-#include "property/planner/checked_unwindings.hpp"
+#include "property/planner/checked_rewinds.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
 #include "support/draws.hpp"
 #include "support/machines.hpp"
 #include "support/program_end.hpp"
 
-namespace meridian::test::unwind {
+namespace meridian::test::rewinds {
 namespace {
 
-TEST(Unwinding, FindsTheWayPastThePoleBehindItOnTheWindingThatHoldsThere) {
+TEST(Rewind, FindsTheWayPastThePoleBehindItOnTheWindingThatHoldsThere) {
   const MachineModel model = limited(lai_machine(), -200, 200);
   const double tilt = units::rad_from_deg(8), offset = units::rad_from_deg(0.05);
   for (const double side : {-1.0, 1.0}) {
@@ -54,22 +54,22 @@ TEST(Unwinding, FindsTheWayPastThePoleBehindItOnTheWindingThatHoldsThere) {
     limits.travel_min = limits.travel_max - units::rad_from_deg(410);
     const SmoothTrace trace = plan_smooth(turned, blocks, start);
     ASSERT_EQ(trace.last.status, PlanStatus::kOk) << trace.last.reject.sequence;
-    EXPECT_EQ(trace.unwindings.size(), 1U);
+    EXPECT_EQ(trace.rewinds.size(), 1U);
     EXPECT_FALSE(trace.eases.empty());
     for (const PoleEase& ease : trace.eases)
       EXPECT_LE(ease.deviation_rad, model.tolerances.axis_rad);
     EXPECT_LT(trace.duration_s(), 20);
-    std::printf("%.0f: %.3f s, %zu unwindings, %zu eases\n", side, trace.duration_s(),
-                trace.unwindings.size(), trace.eases.size());
+    std::printf("%.0f: %.3f s, %zu rewinds, %zu eases\n", side, trace.duration_s(),
+                trace.rewinds.size(), trace.eases.size());
   }
 }
 
 /// Wherever C comes to its end of travel on the way past the pole: also so that the closest place
-/// is just behind the unwinding.
-TEST(Unwinding, CutsOnWhereverItComesOnTheWayPastThePole) {
+/// is just behind the rewind.
+TEST(Rewind, CutsOnWhereverItComesOnTheWayPastThePole) {
   const MachineModel model = limited(lai_machine(), -200, 200);
   const double tilt = units::rad_from_deg(8);
-  int unwindings = 0;
+  int rewinds = 0;
   for (const PolePolicy policy : {PolePolicy::kExact, PolePolicy::kEase}) {
     for (const double offset_deg : {0.05, 0.3, 1.0}) {
       const double offset = units::rad_from_deg(offset_deg);
@@ -102,14 +102,14 @@ TEST(Unwinding, CutsOnWhereverItComesOnTheWayPastThePole) {
         EXPECT_LE(std::max({use.v, use.a, use.j}), kLimit) << use.where;
         for (const PlanSample& one : setpoints)
           ASSERT_LT(first_joint_outside_travel(turned, one.q, 1e-9), 0);
-        unwindings += static_cast<int>(trace.unwindings.size());
+        rewinds += static_cast<int>(trace.rewinds.size());
       }
     }
   }
-  EXPECT_GT(unwindings, 5);
+  EXPECT_GT(rewinds, 5);
 }
 
-TEST(Unwinding, IsNotAskedForWhereTheTurnOfCFits) {
+TEST(Rewind, IsNotAskedForWhereTheTurnOfCFits) {
   MachineModel model = limited(lai_machine(), -720, 720);
   model.pole_policy = PolePolicy::kExact;
   const double offset = units::rad_from_deg(1), tilt = units::rad_from_deg(15);
@@ -139,13 +139,13 @@ TEST(Unwinding, IsNotAskedForWhereTheTurnOfCFits) {
 
 /// Onto 0.01 deg beside the pole, a rest there, and off again farther round, where C has no travel
 /// left on the branch that it came on.
-TEST(Unwinding, IsNotNeededWhereTheOtherBranchLeadsOffThePole) {
+TEST(Rewind, IsNotNeededWhereTheOtherBranchLeadsOffThePole) {
   const auto lean = [](double tilt_deg, double azimuth_deg, double x) {
     return leaning(units::rad_from_deg(tilt_deg), units::rad_from_deg(azimuth_deg), {x, 20, 0});
   };
   for (MachineModel model :
        {limited(lai_machine(), -400, 400), limited(fork_machine(), -400, 400)}) {
-    for (const UnwindPolicy policy : {UnwindPolicy::kRefuse, UnwindPolicy::kRetract}) {
+    for (const RewindPolicy policy : {RewindPolicy::kRefuse, RewindPolicy::kRetract}) {
       for (const double farther_deg : {70.0, -70.0}) {
         SCOPED_TRACE(testing::Message() << model.name << " by " << farther_deg);
         std::vector<ClBlock> blocks;
@@ -161,15 +161,15 @@ TEST(Unwinding, IsNotNeededWhereTheOtherBranchLeadsOffThePole) {
         const double end = start[free] + std::copysign(units::rad_from_deg(20), sign * farther_deg);
         const double other = end - std::copysign(units::rad_from_deg(200), sign * farther_deg);
         MachineModel turned = model;
-        turned.unwind_policy = policy;
+        turned.rewind_policy = policy;
         turned.joints[free].limits.travel_min = std::min(end, other);
         turned.joints[free].limits.travel_max = std::max(end, other);
         const SmoothTrace trace = plan_smooth(turned, blocks, start, {Transition::kSmooth, 0, 0},
-                                              policy == UnwindPolicy::kRefuse);
+                                              policy == RewindPolicy::kRefuse);
         Found found;
         check(turned, trace, blocks, start, found);
         if (HasFatalFailure()) return;
-        EXPECT_EQ(found.unwindings, 0);
+        EXPECT_EQ(found.rewinds, 0);
         double told = 0;
         for (const PoleEase& ease : trace.eases) told = std::max(told, ease.deviation_rad);
         EXPECT_GE(told, units::rad_from_deg(0.0099)) << "C was turned beside the pole";
@@ -179,4 +179,4 @@ TEST(Unwinding, IsNotNeededWhereTheOtherBranchLeadsOffThePole) {
 }
 
 }  // namespace
-}  // namespace meridian::test::unwind
+}  // namespace meridian::test::rewinds
