@@ -40,8 +40,8 @@ int run_all(const Options& options, const std::string& folder) {
   std::cout << bench::table_header();
   bool is_in_order = true;
   for (const std::string& name : options.paths.empty() ? bench::path_names() : options.paths) {
-    for (const PolePolicy policy : {PolePolicy::kEase, PolePolicy::kExact}) {
-      const char* const word = policy == PolePolicy::kEase ? "ease" : "exact";
+    for (const PolePolicy policy : {PolePolicy::kRelax, PolePolicy::kExact}) {
+      const char* const word = policy == PolePolicy::kRelax ? "ease" : "exact";
       if (options.pole_policy != "both" && options.pole_policy != word) continue;
       model.pole_policy = policy;
       const auto result = bench::run_path(name, model, bench);

@@ -161,7 +161,7 @@ void take_recorded_tools(const Options& options, const simulate::OperatorEvents&
 
 int run(const Options& options) {
   MachineModel model = load_machine(options.machine);
-  if (options.pole_policy == "ease") model.pole_policy = PolePolicy::kEase;
+  if (options.pole_policy == "ease") model.pole_policy = PolePolicy::kRelax;
   if (options.pole_policy == "exact") model.pole_policy = PolePolicy::kExact;
   if (options.override_ramp_s > 0) model.override_ramp_s = options.override_ramp_s;
   ToolTable tools = load_tools(options.machine);

@@ -35,8 +35,9 @@ class SpanMaker {
     BandTolerance tolerance;
     tolerance.tip_mm = model.tolerances.tip_mm;
     tolerance.axis_rad = model.tolerances.axis_rad;
-    const bool eases = redundant_joint(model) >= 0 && model.pole_policy == PolePolicy::kEase;
-    if (eases) tolerance.pole = to_array(pole_direction(model));
+    const bool relaxed_axes =
+        redundant_joint(model) >= 0 && model.pole_policy == PolePolicy::kRelax;
+    if (relaxed_axes) tolerance.pole = to_array(pole_direction(model));
     const double axis_rad = std::max(tolerance.axis_rad, model.tolerances.pole_axis_rad);
     band_.begin(start.pose, tolerance);
     corridor_.begin(

@@ -119,7 +119,7 @@ void print_corners(MachineModel model, int first, int programs) {
 void print_bench_paths(MachineModel model) {
   for (const std::string& name : path_names()) {
     const auto blocks = path(name, kFeed_mm_per_s);
-    model.pole_policy = PolePolicy::kEase;
+    model.pole_policy = PolePolicy::kRelax;
     print(name, model, blocks);
     if (name.find("near_pole") != 0) continue;
     model.pole_policy = PolePolicy::kExact;

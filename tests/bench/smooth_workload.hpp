@@ -81,13 +81,14 @@ class SmoothWindows {
     start.epoch = ++epoch_;
     start.is_on_pole = std::all_of(blocks.begin(), blocks.end(), [this](const ClBlock& block) {
       return redundant_joint(model_) >= 0 &&
-             pole_distance(model_, to_vector(block.axis)) < kPoleEase_rad;
+             pole_distance(model_, to_vector(block.axis)) < kPoleDeviation_rad;
     });
     BandTolerance tolerance;
     tolerance.tip_mm = model_.tolerances.tip_mm;
     tolerance.axis_rad = model_.tolerances.axis_rad;
-    const bool eases = redundant_joint(model_) >= 0 && model_.pole_policy == PolePolicy::kEase;
-    if (eases) tolerance.pole = to_array(pole_direction(model_));
+    const bool relaxed_axes =
+        redundant_joint(model_) >= 0 && model_.pole_policy == PolePolicy::kRelax;
+    if (relaxed_axes) tolerance.pole = to_array(pole_direction(model_));
     run_.begin(start, tolerance,
                std::max(model_.tolerances.axis_rad, model_.tolerances.pole_axis_rad));
     max_windows_ = max_windows;

@@ -16,7 +16,7 @@ namespace meridian {
 namespace {
 
 constexpr double kPointTip_mm = 2e-4;  // words have 1e-4 mm and 1e-5 deg, at most 0.5 m of arm
-constexpr double kPointAxis = 1e-5;    // easing onto the pole, rounded angles
+constexpr double kPointAxis = 1e-5;    // relaxing onto the pole, rounded angles
 
 class PostCorpus : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 

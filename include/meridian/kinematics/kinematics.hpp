@@ -218,8 +218,8 @@ template <class S>
 /// `free`.
 ///
 /// The tip is exact for any value; the axis is the nearest one that the machine has with its free
-/// joint there (docs/kinematics.md, eq. 2.6). Pole turns and eased passages use it. Status: kOk or
-/// kUnreachable. Frame: W. RT: cycle. Proof: tests/property/kinematics.
+/// joint there (docs/kinematics.md, eq. 2.6). Pole turns and relaxed passages use it. Status: kOk
+/// or kUnreachable. Frame: W. RT: cycle. Proof: tests/property/kinematics.
 template <class S>
 [[nodiscard]] inline Solution<S> solve_held(const MachineModel& model, double tool_length_mm,
                                             const Pose<S>& X_WT, const S& free) noexcept {

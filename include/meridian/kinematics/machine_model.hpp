@@ -48,8 +48,8 @@ enum class MachineFamily : std::uint8_t {
 /// leaving the pole itself, the redundant joint turns at rest, tip and axis fixed, whatever the
 /// policy.
 enum class PolePolicy : std::uint8_t {
-  kEase,  ///< the redundant joint may take a shorter way that moves the axis inside its tolerance
-  kExact  ///< the joints follow the path, which slows down as the redundant joint needs it
+  kRelax,  ///< the redundant joint may take a shorter way that moves the axis inside its tolerance
+  kExact   ///< the joints follow the path, which slows down as the redundant joint needs it
 };
 
 /// What the planner does where the redundant joint would leave its travel within the program and
@@ -74,7 +74,8 @@ inline constexpr double kMinAxisTolerance_rad = 1e-4;
 inline constexpr double kMaxTipTolerance_mm = 10;
 inline constexpr double kMaxAxisTolerance_rad = 0.17453292519943295;
 
-/// Deviation that smoothing and pole easing may use together, measured from the programmed path.
+/// Deviation that smoothing and relaxing at the pole may use together, measured from the programmed
+/// path.
 struct Tolerances {
   double tip_mm = 0.01;
   double axis_rad = 0.0017453292519943296;
@@ -86,7 +87,7 @@ struct Tolerances {
   }
 };
 
-/// Farther from the pole than this the redundant joint is never eased.
+/// Farther from the pole than this the redundant joint is never relaxed.
 inline constexpr double kPoleReach_rad = 0.4;
 
 /// Everything that is known about a machine before it moves: built and checked once by
@@ -108,7 +109,7 @@ struct MachineModel {
   RigidTransform X_MW;        ///< workpiece W in the frame M of the kinematics
   Tolerances tolerances;
   Transition transition = Transition::kExactStop;  ///< of programs that do not ask for another
-  PolePolicy pole_policy = PolePolicy::kEase;
+  PolePolicy pole_policy = PolePolicy::kRelax;
   RewindPolicy rewind_policy = RewindPolicy::kRefuse;
   double rewind_retract_mm = 0;  ///< kRetract: the whole way off the part, never less
   double clearance_mm = 50;      ///< retract of an approach along the tool axis

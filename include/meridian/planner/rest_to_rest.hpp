@@ -29,13 +29,13 @@ enum class PlanStatus : std::uint8_t {
 struct PlanResult {
   PlanStatus status = PlanStatus::kOk;
   BlockReject reject;
-  double axis_deviation_rad = 0;  ///< largest ease of the axis beside the pole
+  double axis_deviation_rad = 0;  ///< largest deviation of the axis beside the pole
   Rewind rewind;                  ///< made ahead of the block, where it is_made()
 };
 
-/// Within this distance of the pole the programmed axis is eased onto the pole: nearer, the turn of
-/// the redundant joint would be made of rounding. 0.00046 deg.
-inline constexpr double kPoleEase_rad = 8e-6;
+/// Within this distance of the pole the programmed axis is relaxed onto the pole: nearer, the turn
+/// of the redundant joint would be made of rounding. 0.00046 deg.
+inline constexpr double kPoleDeviation_rad = 8e-6;
 
 /// The plain planner: every block from rest to rest, tip on its line or arc, axis on its great
 /// circle, every joint inside its limits at every override, feed never exceeded.
@@ -94,8 +94,8 @@ class RestToRestPlanner {
 
   /// Axes of blocks nearer to the pole than nearly all of `rad` are taken for the pole, and blocks
   /// that pass it so near run through it, where that leads anywhere
-  /// (PlanResult::axis_deviation_rad). Never less than kPoleEase_rad, which begin() sets. Proof:
-  /// tests/property/planner/pole_rest_test.cpp.
+  /// (PlanResult::axis_deviation_rad). Never less than kPoleDeviation_rad, which begin() sets.
+  /// Proof: tests/property/planner/pole_rest_test.cpp.
   void set_pole_tolerance(double rad) noexcept;
 
   /// The cuts that come are planned for `factor` times their feed, at least 1; the machine's

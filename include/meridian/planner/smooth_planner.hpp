@@ -14,7 +14,7 @@
 #include "meridian/planner/approach.hpp"
 #include "meridian/planner/feed_mark.hpp"
 #include "meridian/planner/motion_port.hpp"
-#include "meridian/planner/pole_ease.hpp"
+#include "meridian/planner/relaxed_axis.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
 #include "meridian/planner/rewind.hpp"
 
@@ -35,7 +35,7 @@ struct SmoothSettings {
 /// The planner that runs on through blocks: cuts become a band spline, the rolling feed moves along
 /// it in windows that each end in a stop of their own. Everything else is left to the plain planner
 /// and done at rest: approach, rapids, dwells, actions, stops, blocks that lead off the pole from
-/// rest. Through and past the pole, and lingering there, the redundant joint may ease the axis
+/// rest. Through and past the pole, and lingering there, the redundant joint may relax the axis
 /// inside its tolerance (docs/motion.md, section 10).
 ///
 /// A cut that was taken (kOk) is published when enough of what follows it is known: up to 172 mm
@@ -104,7 +104,7 @@ class SmoothPlanner {
 
   /// Takes the oldest stretch beside the pole on which the axis was moved, of what was planned so
   /// far; false if there is none. At most 256 wait, then the oldest go.
-  [[nodiscard]] bool take_ease(PoleEase& out) noexcept;
+  [[nodiscard]] bool take_relaxed_axis(RelaxedAxis& out) noexcept;
 
   /// Takes the oldest mark of where a feed override above 100 % holds from, or of how much was
   /// looked at, of what was planned so far; false if there is none. A program's begin comes first.

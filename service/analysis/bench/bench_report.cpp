@@ -23,7 +23,7 @@ double largest(const record::CheckReport& verdict, record::Peak record::JointUse
 std::string table_header() {
   return "path              policy   time s  tip um  axis deg  vertex um    feed     vel     acc   "
          " "
-         "jerk  eased deg  verdict\n";
+         "jerk  axis, deg  verdict\n";
 }
 
 std::string table_row(const BenchResult& result) {
@@ -36,7 +36,7 @@ std::string table_row(const BenchResult& result) {
                units::deg_from_rad(v.axis_rad.value), kUm_per_mm * v.vertex_mm.value, v.feed.value,
                largest(v, &record::JointUse::velocity), largest(v, &record::JointUse::acceleration),
                largest(v, &record::JointUse::jerk),
-               units::deg_from_rad(result.plan.largest_ease_rad));
+               units::deg_from_rad(result.plan.largest_deviation_rad));
   out += v.passed() ? "PASS" : "FAIL: " + v.findings.front().text;
   if (result.certificate) out += result.certificate->is_given() ? ", certified" : ", NOT certified";
   return out + "\n";

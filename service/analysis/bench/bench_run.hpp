@@ -22,7 +22,7 @@ struct BenchOptions {
 /// proved between its setpoints.
 struct BenchResult {
   std::string path;
-  PolePolicy policy = PolePolicy::kEase;
+  PolePolicy policy = PolePolicy::kRelax;
   simulate::SimulateReport plan;
   record::CheckReport verdict;
   std::optional<certify::Certificate> certificate;

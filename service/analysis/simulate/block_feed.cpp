@@ -60,27 +60,28 @@ void BlockFeed::explain(const ClBlock& block, double programmed_feed) {
   explainer_->add_block(block, programmed_feed, tip_mm, path_mm);
 }
 
-void BlockFeed::take_eases() {
-  PoleEase ease;
-  while (planner_.take_ease(ease)) {
-    ++eases_.count;
-    eases_.largest_rad = std::max(eases_.largest_rad, ease.deviation_rad);
-    if (eases_.first.size() < kMaxEases) eases_.first.push_back(ease);
+void BlockFeed::take_relaxed_axes() {
+  RelaxedAxis relaxed_axis;
+  while (planner_.take_relaxed_axis(relaxed_axis)) {
+    ++relaxed_axes_.count;
+    relaxed_axes_.largest_rad = std::max(relaxed_axes_.largest_rad, relaxed_axis.deviation_rad);
+    if (relaxed_axes_.first.size() < kMaxRelaxedAxes) relaxed_axes_.first.push_back(relaxed_axis);
     if (explainer_ != nullptr) {
-      explainer_->add_ease(ease.first_sequence, ease.last_sequence, ease.deviation_rad);
+      explainer_->add_relaxed_axis(relaxed_axis.first_sequence, relaxed_axis.last_sequence,
+                                   relaxed_axis.deviation_rad);
     }
   }
   Rewind rewind;
   while (planner_.take_rewind(rewind)) {
     ++rewind_count_;
-    if (rewinds_.size() < kMaxEases) rewinds_.push_back(rewind);
+    if (rewinds_.size() < kMaxRelaxedAxes) rewinds_.push_back(rewind);
   }
 }
 
 /// Publishes what became ready without a block.
 void BlockFeed::advance() {
   const PlanResult result = planner_.advance(writer_);
-  take_eases();
+  take_relaxed_axes();
   if (result.status == PlanStatus::kRefused) end_at(result.reject);
 }
 
@@ -99,7 +100,7 @@ void BlockFeed::fill() {
       return;
     }
     const PlanResult result = planner_.plan(*block_, writer_);
-    take_eases();
+    take_relaxed_axes();
     if (result.status == PlanStatus::kNoRoom) return;
     if (result.status == PlanStatus::kRefused) {
       end_at(result.reject);

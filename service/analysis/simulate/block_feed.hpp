@@ -36,16 +36,16 @@ class BlockFeed {
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
   /// Why the last block was refused, one sentence; empty where none was.
   [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
-  /// Stretches beside the pole on which the axis was moved: the first kMaxEases, how many there
-  /// were, the farthest.
-  struct Eases {
-    std::vector<PoleEase> first;
+  /// Stretches beside the pole on which the axis was moved: the first kMaxRelaxedAxes, how many
+  /// there were, the farthest.
+  struct RelaxedAxes {
+    std::vector<RelaxedAxis> first;
     std::uint64_t count = 0;
     double largest_rad = 0;
   };
-  static constexpr std::size_t kMaxEases = 100;
-  [[nodiscard]] const Eases& eases() const noexcept { return eases_; }
-  /// Rewinds so far, in order: the first kMaxEases.
+  static constexpr std::size_t kMaxRelaxedAxes = 100;
+  [[nodiscard]] const RelaxedAxes& relaxed_axes() const noexcept { return relaxed_axes_; }
+  /// Rewinds so far, in order: the first kMaxRelaxedAxes.
   [[nodiscard]] const std::vector<Rewind>& rewinds() const noexcept { return rewinds_; }
   [[nodiscard]] std::uint64_t rewind_count() const noexcept { return rewind_count_; }
   [[nodiscard]] std::uint64_t motion_blocks() const noexcept { return motion_blocks_; }
@@ -67,10 +67,10 @@ class BlockFeed {
   Explainer* explainer_;
   std::optional<ToolPose> pose_;  ///< end of the last motion block
   std::optional<ClBlock> block_;  ///< checked, not planned yet
-  void take_eases();
+  void take_relaxed_axes();
 
   std::string refusal_;
-  Eases eases_;
+  RelaxedAxes relaxed_axes_;
   std::vector<Rewind> rewinds_;
   std::uint64_t rewind_count_ = 0;
   std::uint64_t motion_blocks_ = 0;

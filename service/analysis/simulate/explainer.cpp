@@ -74,10 +74,10 @@ Explainer::Open* Explainer::find(std::uint64_t sequence) {
   return n < open_.size() ? &open_[n] : nullptr;
 }
 
-void Explainer::add_ease(std::uint64_t first, std::uint64_t last, double deviation_rad) {
+void Explainer::add_relaxed_axis(std::uint64_t first, std::uint64_t last, double deviation_rad) {
   for (std::uint64_t n = first; n <= last; ++n) {
     if (Open* const open = find(n)) {
-      open->block.eased_rad = std::max(open->block.eased_rad, deviation_rad);
+      open->block.relaxed_rad = std::max(open->block.relaxed_rad, deviation_rad);
     }
   }
 }

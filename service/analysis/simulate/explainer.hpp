@@ -47,7 +47,7 @@ class Explainer {
   void add_block(const ClBlock& block, double programmed_feed, double tip_length_mm,
                  double path_length_mm);
   /// The axis was moved beside the pole by that much in blocks `first` to `last`.
-  void add_ease(std::uint64_t first, std::uint64_t last, double deviation_rad);
+  void add_relaxed_axis(std::uint64_t first, std::uint64_t last, double deviation_rad);
 
   /// One cycle of the program, after the approach. `piece` and `path` are those in force, nullptr
   /// for none; `piece_time` as in the cycle's state.

@@ -24,7 +24,7 @@ struct ExplainedBlock {
   double lost_s = 0;               ///< of it: more than the programmed feed takes; cuts alone
   double distance_mm = 0;          ///< of the tip in that time
   double min_mm_per_s = 0;         ///< slowest cycle; blocks shorter than one have their mean
-  double eased_rad = 0;            ///< beside the pole, largest
+  double relaxed_rad = 0;          ///< beside the pole, largest
   std::array<float, kLimitIds> by_limit{};  ///< s of time at each limit
   std::array<float, kCauses> by_cause{};
   std::array<float, kLimitIds> lost_by_limit{};

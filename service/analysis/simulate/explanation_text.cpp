@@ -99,7 +99,7 @@ std::string to_text(const Explanation& explanation, const MachineModel& model) {
 std::string explained_header(const MachineModel& model) {
   std::string out =
       "sequence,line,kind,length_mm,programmed_mm_per_min,mean_mm_per_min,min_mm_per_min,time_s,"
-      "lost_s,held_by,why,eased_deg";
+      "lost_s,held_by,why,deviation_deg";
   for (std::size_t id = 0; id < limit_count(model); ++id) {
     std::string name = name_of(static_cast<LimitId>(id), model);
     std::replace(name.begin(), name.end(), ' ', '_');
@@ -119,7 +119,7 @@ std::string to_csv(const ExplainedBlock& block, const MachineModel& model) {
          units::per_min_from_per_s(block.mean_mm_per_s()),
          units::per_min_from_per_s(block.min_mm_per_s), block.time_s, block.lost_s);
   out += name_of(block.main_limit(), model) + "," + name_of(block.main_cause());
-  append(out, ",%.6f", units::deg_from_rad(block.eased_rad));
+  append(out, ",%.6f", units::deg_from_rad(block.relaxed_rad));
   const double whole = std::max(block.time_s, 1e-300);
   for (std::size_t id = 0; id < limit_count(model); ++id) {
     append(out, ",%.3g", static_cast<double>(block.by_limit[id]) / whole);

@@ -60,9 +60,9 @@ class Run {
     report.cycles = in_.cycle;
     report.motion_blocks = feed_.motion_blocks();
     report.feeds_limited = feed_.feeds_limited();
-    report.eases = feed_.eases().first;
-    report.ease_count = feed_.eases().count;
-    report.largest_ease_rad = feed_.eases().largest_rad;
+    report.relaxed_axes = feed_.relaxed_axes().first;
+    report.relaxed_count = feed_.relaxed_axes().count;
+    report.largest_deviation_rad = feed_.relaxed_axes().largest_rad;
     report.rewinds = feed_.rewinds();
     report.rewind_count = feed_.rewind_count();
     if (report.outcome == Outcome::kDone || report.outcome == Outcome::kStarved) {

@@ -62,24 +62,26 @@ void append_rewinds(std::string& text, const SimulateReport& report, const Machi
   }
 }
 
-/// The stretches that were eased, the farthest first where there are many.
-void append_eases(std::string& text, const SimulateReport& report) {
+/// The stretches that were relaxed, the farthest first where there are many.
+void append_relaxed_axes(std::string& text, const SimulateReport& report) {
   constexpr std::size_t kMaxReported = 12;
-  append(text, "pole       axis eased in %llu stretches, at most %.4f deg\n",
-         static_cast<Count>(report.ease_count), units::deg_from_rad(report.largest_ease_rad));
-  std::vector<PoleEase> shown = report.eases;
+  append(text, "pole       axis relaxed in %llu stretches, at most %.4f deg\n",
+         static_cast<Count>(report.relaxed_count),
+         units::deg_from_rad(report.largest_deviation_rad));
+  std::vector<RelaxedAxis> shown = report.relaxed_axes;
   if (shown.size() > kMaxReported) {
-    std::stable_sort(shown.begin(), shown.end(), [](const PoleEase& a, const PoleEase& b) {
+    std::stable_sort(shown.begin(), shown.end(), [](const RelaxedAxis& a, const RelaxedAxis& b) {
       return a.deviation_rad > b.deviation_rad;
     });
     shown.resize(kMaxReported);
   }
-  for (const PoleEase& ease : shown) {
-    append(text, "  lines %u to %u: %.4f deg, %s\n", ease.first_line, ease.last_line,
-           units::deg_from_rad(ease.deviation_rad), name_of(ease.reason));
+  for (const RelaxedAxis& relaxed_axis : shown) {
+    append(text, "  lines %u to %u: %.4f deg, %s\n", relaxed_axis.first_line,
+           relaxed_axis.last_line, units::deg_from_rad(relaxed_axis.deviation_rad),
+           name_of(relaxed_axis.reason));
   }
-  if (report.ease_count > shown.size()) {
-    append(text, "  and %llu more\n", static_cast<Count>(report.ease_count - shown.size()));
+  if (report.relaxed_count > shown.size()) {
+    append(text, "  and %llu more\n", static_cast<Count>(report.relaxed_count - shown.size()));
   }
 }
 
@@ -135,7 +137,7 @@ std::string to_text(const SimulateReport& report, const MachineModel& model) {
   }
   append(text, "           the cuts alone at the programmed feed: %.3f s\n", report.at_feed_s);
   if (report.shares.cycles > 0) append_shares(text, report.shares, model);
-  if (report.ease_count > 0) append_eases(text, report);
+  if (report.relaxed_count > 0) append_relaxed_axes(text, report);
   if (report.rewind_count > 0) append_rewinds(text, report, model);
   append(text, "cycles     %llu of %.6g ms, computed in %.2f s\n",
          static_cast<Count>(report.cycles), report.cycle_s * 1e3, report.computing_s);

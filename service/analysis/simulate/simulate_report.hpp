@@ -9,7 +9,7 @@
 #include "meridian/cycle/cycle_data.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/path/block_reject.hpp"
-#include "meridian/planner/pole_ease.hpp"
+#include "meridian/planner/relaxed_axis.hpp"
 #include "meridian/planner/rewind.hpp"
 
 namespace meridian::simulate {
@@ -53,11 +53,11 @@ struct SimulateReport {
   double at_feed_s = 0;  ///< what the cuts alone would take at the programmed feed
   double cut_length_mm = 0, rapid_length_mm = 0;
   std::uint64_t blocks = 0, motion_blocks = 0, blocks_done = 0;
-  std::uint64_t feeds_limited = 0;  ///< blocks above the machine's highest feed
-  double computing_s = 0;           ///< of this host
-  std::vector<PoleEase> eases;      ///< beside the pole: the first ones
-  std::uint64_t ease_count = 0;
-  double largest_ease_rad = 0;
+  std::uint64_t feeds_limited = 0;        ///< blocks above the machine's highest feed
+  double computing_s = 0;                 ///< of this host
+  std::vector<RelaxedAxis> relaxed_axes;  ///< beside the pole: the first ones
+  std::uint64_t relaxed_count = 0;
+  double largest_deviation_rad = 0;
   std::vector<Rewind> rewinds;  ///< of the redundant joint: the first ones
   std::uint64_t rewind_count = 0;
   LimitShares shares;

@@ -144,7 +144,7 @@ class Interpolator::Machine {
 
   /// The planner keeps few reports; here nobody reads them.
   void drop_reports() noexcept {
-    for (PoleEase ease; planner_.take_ease(ease);) {
+    for (RelaxedAxis relaxed_axis; planner_.take_relaxed_axis(relaxed_axis);) {
     }
     for (Rewind rewind; planner_.take_rewind(rewind);) {
     }

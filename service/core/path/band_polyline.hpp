@@ -29,8 +29,8 @@ inline constexpr double kMinStep_mm = 1e-6;
 /// be there: as far as a corner is felt at the widest gaps (docs/motion.md, 1.5).
 inline constexpr double kSpeedReach_mm = 5;
 
-/// Of the axis tolerance beside the pole of a machine that eases the axis; the rest is left to the
-/// ease.
+/// Of the axis tolerance beside the pole of a machine that relaxes the axis; the rest is left to
+/// the axis deviation.
 inline constexpr double kPoleShare = 0.5;
 
 /// One corner of the CL polyline with the segment that ends in it. The store is most of a planner's

@@ -14,9 +14,9 @@
 #include "meridian/planner/approach.hpp"
 #include "meridian/planner/feed_mark.hpp"
 #include "meridian/planner/motion_port.hpp"
-#include "meridian/planner/pole_ease.hpp"
-#include "meridian/planner/smooth_planner.hpp"
+#include "meridian/planner/relaxed_axis.hpp"
 #include "meridian/planner/rewind.hpp"
+#include "meridian/planner/smooth_planner.hpp"
 #include "service/daemon/listeners/enabling_watch.hpp"
 #include "service/daemon/ports/command_port.hpp"
 #include "service/daemon/ports/queue_mark.hpp"
@@ -158,8 +158,8 @@ struct Ports {
   SpscRing<PlannedAction, 4096> actions;  ///< more than a planner takes before it publishes
   MotionPort motion;
   LatestValue<Approach> approach, approach_for_status;  ///< planner to commands, to telemetry
-  SpscRing<PoleEase, 256> eases;                        ///< planner to telemetry
-  SpscRing<Rewind, 256> rewinds;                  ///< planner to telemetry
+  SpscRing<RelaxedAxis, 256> relaxed_axes;              ///< planner to telemetry
+  SpscRing<Rewind, 256> rewinds;                        ///< planner to telemetry
   SpscRing<FeedMark, 256> feed_marks;                   ///< planner to telemetry
 
   SpscRing<Arrival, 1024> arrivals;  ///< receive thread to commands

@@ -122,7 +122,8 @@ bool PlannerThread::plan(const QueuedBlock& queued) noexcept {
 void PlannerThread::report_plan() noexcept {
   ports_.planned_s.store(writer_.published_s() - published_before_s_, std::memory_order_relaxed);
   if (Approach approach; planner_.take_approach(approach)) report(approach);
-  for (PoleEase ease; planner_.take_ease(ease);) (void)ports_.eases.try_push(ease);
+  for (RelaxedAxis relaxed_axis; planner_.take_relaxed_axis(relaxed_axis);)
+    (void)ports_.relaxed_axes.try_push(relaxed_axis);
   for (Rewind one; planner_.take_rewind(one);) (void)ports_.rewinds.try_push(one);
   for (FeedMark mark; planner_.take_feed_mark(mark);) {
     if (!ports_.feed_marks.try_push(mark)) ports_.events_overrun.fetch_add(1);

@@ -153,8 +153,9 @@ void TelemetryThread::drain() {
     keeper_.see(event, alarm_message_);
   }
   recorder_.miss_events(ports_.events_overrun.load(std::memory_order_relaxed));
-  PoleEase ease;
-  while (ports_.eases.try_pop(ease)) log_->info("{}", telemetry::describe(ease));
+  RelaxedAxis relaxed_axis;
+  while (ports_.relaxed_axes.try_pop(relaxed_axis))
+    log_->info("{}", telemetry::describe(relaxed_axis));
   Rewind rewind;
   while (ports_.rewinds.try_pop(rewind)) log_->info("{}", telemetry::describe(rewind));
   drain_records();

@@ -314,9 +314,10 @@ std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
   return line > 0 ? fmt::format("{} (line {})", text, line) : text;
 }
 
-std::string describe(const PoleEase& ease) {
-  return fmt::format("lines {} to {}: tool axis eased by {:.4f} deg, {}", ease.first_line,
-                     ease.last_line, units::deg_from_rad(ease.deviation_rad), name_of(ease.reason));
+std::string describe(const RelaxedAxis& relaxed_axis) {
+  return fmt::format("lines {} to {}: tool axis relaxed by {:.4f} deg, {}", relaxed_axis.first_line,
+                     relaxed_axis.last_line, units::deg_from_rad(relaxed_axis.deviation_rad),
+                     name_of(relaxed_axis.reason));
 }
 
 std::string describe(const Rewind& rewind) {

@@ -7,7 +7,7 @@
 #include "meridian/cycle/cycle_data.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/planner/approach.hpp"
-#include "meridian/planner/pole_ease.hpp"
+#include "meridian/planner/relaxed_axis.hpp"
 #include "meridian/planner/rewind.hpp"
 
 /// What the cycle reports in numbers, in words for operators and the log.
@@ -25,7 +25,7 @@ enum class Weight : std::uint8_t { kDetail, kNews, kWarning, kError };
 [[nodiscard]] std::string describe(Alarm alarm, int joint, double value, std::uint32_t line,
                                    const MachineModel& model);
 /// Where the tool axis will be moved beside the pole, by how much and why.
-[[nodiscard]] std::string describe(const PoleEase& ease);
+[[nodiscard]] std::string describe(const RelaxedAxis& relaxed_axis);
 [[nodiscard]] std::string describe(const Rewind& rewind);
 /// How the machine will come to a program's first motion, in at most `room` characters where they
 /// hold what cannot be left out: line, how far off the part its first actions are done, length,

@@ -28,7 +28,7 @@ constexpr unsigned kSeed = 20261125;
 constexpr int kPrograms = 10;
 constexpr int kLength = 10;
 constexpr double kTip_mm = 2e-4;    // words have 1e-4 mm
-constexpr double kAxis_rad = 2e-5;  // words have 1e-5 deg; easing onto the pole
+constexpr double kAxis_rad = 2e-5;  // words have 1e-5 deg; relaxing onto the pole
 
 /// How the tool axis is written.
 enum class Words : std::uint8_t { kRotary, kVectors, kSiemens, kKlartext };

@@ -68,7 +68,8 @@ struct BlockStream {
   void pop_reported() {
     for (FeedMark mark; planner.take_feed_mark(mark);) outcome.marks.push_back(mark);
     for (Rewind one; planner.take_rewind(one);) outcome.trace.rewinds.push_back(one);
-    for (PoleEase one; planner.take_ease(one);) outcome.trace.eases.push_back(one);
+    for (RelaxedAxis one; planner.take_relaxed_axis(one);)
+      outcome.trace.relaxed_axes.push_back(one);
   }
 
   std::unique_ptr<MotionPort> port = std::make_unique<MotionPort>();

@@ -224,7 +224,7 @@ std::vector<ClBlock> past_the_pole(double from_deg, double offset_deg) {
 }
 
 /// On the programmed great circle C would turn by half a turn, for which it has no travel; the cut
-/// is eased over the pole, where C nearly stands.
+/// is relaxed over the pole, where C nearly stands.
 TEST(LookAhead, RefusesNothingThatIsEasedPastThePole) {
   const MachineModel model = limited(bench_machine(), -60, 60);
   const double tolerance_deg = units::deg_from_rad(axis_tolerance_beside_pole(model));

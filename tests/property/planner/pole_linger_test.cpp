@@ -171,8 +171,8 @@ TEST(PoleLinger, AWayOntoThePoleAndOffAgainRunsThroughHoweverLongItStays) {
       SCOPED_TRACE(testing::Message() << count << " blocks, off by " << out_deg << " deg");
       const SmoothTrace trace = cut(model, stay(0, count, out_deg));
       const double feed_s = 0.01 * (23 + count);
-      std::printf("%d blocks on the pole, off by %.0f deg: %.3f s, feed %.3f s, %zu eases\n", count,
-                  out_deg, trace.duration_s(), feed_s, trace.eases.size());
+      std::printf("%d blocks on the pole, off by %.0f deg: %.3f s, feed %.3f s, %zu relaxed\n",
+                  count, out_deg, trace.duration_s(), feed_s, trace.relaxed_axes.size());
       EXPECT_LT(trace.duration_s(), feed_s + (out_deg == 90 ? 2.5 : 1.0));
       for (std::size_t n = 1; n + 1 < trace.times.size(); ++n) {
         const bool is_inside = trace.times[n].sequence > 2 && trace.times[n].sequence < 21U + count;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/// What easing beside the pole costs and gains: the tables of docs/motion.md, section 10.
+/// What relaxing beside the pole costs and gains: the tables of docs/motion.md, section 10.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ struct Pass {
   double time_s = 0, peak_deg_per_s = 0;
   double off_deg = 0;       ///< of the axis across its programmed way, at the setpoints
   double reported_deg = 0;  ///< by the planner, smoothing included
-  std::vector<PoleEase> eases;
+  std::vector<RelaxedAxis> relaxed_axes;
 };
 
 /// Plans, checks the limits, and measures.
@@ -59,9 +59,9 @@ Pass pass(const MachineModel& model, double distance_deg) {
   EXPECT_LE(std::max({use.v, use.a, use.j}), kLimit) << use.where;
   Pass out;
   out.time_s = trace.duration_s();
-  out.eases = trace.eases;
-  for (const PoleEase& ease : trace.eases) {
-    out.reported_deg = std::max(out.reported_deg, units::deg_from_rad(ease.deviation_rad));
+  out.relaxed_axes = trace.relaxed_axes;
+  for (const RelaxedAxis& relaxed_axis : trace.relaxed_axes) {
+    out.reported_deg = std::max(out.reported_deg, units::deg_from_rad(relaxed_axis.deviation_rad));
   }
   const auto ways = programmed_paths(blocks);
   const int free = redundant_joint(model);
@@ -121,13 +121,13 @@ TEST(PoleTable, DenseBlocksOverThePoleAreCutWhateverTheirStep) {
   }
 }
 
-/// What eases the axis leaves the tip where the smoothed path has it: to rounding.
+/// What relaxes the axis leaves the tip where the smoothed path has it: to rounding.
 TEST(PoleTable, TheTipIsOnTheSmoothedPathEasedOrNot) {
   constexpr double kRounding_mm = 1e-9;
   for (const MachineModel& model :
        {bench_machine(), lai_machine(), limited(trunnion_machine(), -720, 720),
         limited(fork_machine(), -720, 720)}) {
-    int eased = 0, exact = 0;
+    int relaxed = 0, exact = 0;
     double farthest_mm = 0;
     for (const double distance_deg : {0.0, 0.05, 0.5}) {
       const auto blocks = pass_at(distance_deg);
@@ -140,13 +140,14 @@ TEST(PoleTable, TheTipIsOnTheSmoothedPathEasedOrNot) {
         if (trace.times[k].kind != TimeKind::kMove || path.kind != PathKind::kSpline) continue;
         const Vector3 tip = forward(model, path.tool_length_mm, one.q).tip;
         farthest_mm = std::max(farthest_mm, (tip - pose_at(path, one.s).tip).norm());
-        ++(path.is_free_driven ? eased : exact);
+        ++(path.is_free_driven ? relaxed : exact);
       }
     }
     EXPECT_LT(farthest_mm, kRounding_mm) << model.name;
-    EXPECT_GT(std::min(eased, exact), 50) << model.name;
-    std::printf("%s: tip at most %.1e mm off the smoothed path at %d setpoints, %d of them eased\n",
-                model.name.c_str(), farthest_mm, eased + exact, eased);
+    EXPECT_GT(std::min(relaxed, exact), 50) << model.name;
+    std::printf(
+        "%s: tip at most %.1e mm off the smoothed path at %d setpoints, %d of them relaxed\n",
+        model.name.c_str(), farthest_mm, relaxed + exact, relaxed);
   }
 }
 
@@ -158,7 +159,8 @@ TEST(PoleTable, TheToleranceThatAProgramAsksForHoldsBesideThePole) {
   const SmoothTrace trace =
       plan_smooth(model, blocks, joints_of(model, blocks[0]), {Transition::kSmooth, 0, asked});
   EXPECT_EQ(trace.last.status, PlanStatus::kOk);
-  for (const PoleEase& ease : trace.eases) EXPECT_LE(ease.deviation_rad, asked * kLimit);
+  for (const RelaxedAxis& relaxed_axis : trace.relaxed_axes)
+    EXPECT_LE(relaxed_axis.deviation_rad, asked * kLimit);
 }
 
 TEST(PoleTable, PassesInsideTheToleranceTakeTheSameTimeAndEaseByTheirDistance) {
@@ -173,12 +175,12 @@ TEST(PoleTable, PassesInsideTheToleranceTakeTheSameTimeAndEaseByTheirDistance) {
       if (distance_deg == 0) straight_s = at.time_s;
       EXPECT_LT(at.time_s, 1.1 * straight_s);
       EXPECT_LE(at.off_deg, distance_deg + 1e-3);
-      ASSERT_EQ(at.eases.size(), 1U);
+      ASSERT_EQ(at.relaxed_axes.size(), 1U);
       EXPECT_GE(at.reported_deg, at.off_deg - 1e-6);
       EXPECT_LE(at.reported_deg, 0.1);
-      EXPECT_EQ(at.eases[0].reason, EaseReason::kThrough);
-      EXPECT_LE(at.eases[0].first_line, 115U);  // the pole is at the end of line 115
-      EXPECT_GE(at.eases[0].last_line, 115U);
+      EXPECT_EQ(at.relaxed_axes[0].reason, RelaxedReason::kThrough);
+      EXPECT_LE(at.relaxed_axes[0].first_line, 115U);  // the pole is at the end of line 115
+      EXPECT_GE(at.relaxed_axes[0].last_line, 115U);
     }
   }
 }
@@ -192,7 +194,7 @@ TEST(PoleTable, TheExactPolicyNeverEasesAndKeepsEveryLimit) {
     const Pass at = pass(model, distance_deg);
     std::printf("exact, passed at %.6f deg: %.3f s, C %.1f deg/s, axis %.6f deg off\n",
                 distance_deg, at.time_s, at.peak_deg_per_s, at.off_deg);
-    EXPECT_LE(at.reported_deg, units::deg_from_rad(kPoleEase_rad));
+    EXPECT_LE(at.reported_deg, units::deg_from_rad(kPoleDeviation_rad));
     EXPECT_LT(at.off_deg, 1e-3);  // of a straight way smoothing leaves that
     EXPECT_GT(at.peak_deg_per_s, distance_deg > 1e-3 ? 50 : -1);
   }

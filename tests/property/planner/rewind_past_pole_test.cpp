@@ -55,12 +55,12 @@ TEST(Rewind, FindsTheWayPastThePoleBehindItOnTheWindingThatHoldsThere) {
     const SmoothTrace trace = plan_smooth(turned, blocks, start);
     ASSERT_EQ(trace.last.status, PlanStatus::kOk) << trace.last.reject.sequence;
     EXPECT_EQ(trace.rewinds.size(), 1U);
-    EXPECT_FALSE(trace.eases.empty());
-    for (const PoleEase& ease : trace.eases)
-      EXPECT_LE(ease.deviation_rad, model.tolerances.axis_rad);
+    EXPECT_FALSE(trace.relaxed_axes.empty());
+    for (const RelaxedAxis& relaxed_axis : trace.relaxed_axes)
+      EXPECT_LE(relaxed_axis.deviation_rad, model.tolerances.axis_rad);
     EXPECT_LT(trace.duration_s(), 20);
-    std::printf("%.0f: %.3f s, %zu rewinds, %zu eases\n", side, trace.duration_s(),
-                trace.rewinds.size(), trace.eases.size());
+    std::printf("%.0f: %.3f s, %zu rewinds, %zu relaxed\n", side, trace.duration_s(),
+                trace.rewinds.size(), trace.relaxed_axes.size());
   }
 }
 
@@ -70,7 +70,7 @@ TEST(Rewind, CutsOnWhereverItComesOnTheWayPastThePole) {
   const MachineModel model = limited(lai_machine(), -200, 200);
   const double tilt = units::rad_from_deg(8);
   int rewinds = 0;
-  for (const PolePolicy policy : {PolePolicy::kExact, PolePolicy::kEase}) {
+  for (const PolePolicy policy : {PolePolicy::kExact, PolePolicy::kRelax}) {
     for (const double offset_deg : {0.05, 0.3, 1.0}) {
       const double offset = units::rad_from_deg(offset_deg);
       std::vector<ClBlock> blocks;
@@ -171,7 +171,8 @@ TEST(Rewind, IsNotNeededWhereTheOtherBranchLeadsOffThePole) {
         if (HasFatalFailure()) return;
         EXPECT_EQ(found.rewinds, 0);
         double told = 0;
-        for (const PoleEase& ease : trace.eases) told = std::max(told, ease.deviation_rad);
+        for (const RelaxedAxis& relaxed_axis : trace.relaxed_axes)
+          told = std::max(told, relaxed_axis.deviation_rad);
         EXPECT_GE(told, units::rad_from_deg(0.0099)) << "C was turned beside the pole";
       }
     }

@@ -65,17 +65,17 @@ TEST_P(RobotPasses, AreReportedByTheNameOfTheSingularity) {
     const auto blocks = singular.program(Pass::kThrough, beside);
     const auto trace =
         plan_smooth(robot, blocks, joints_of(robot, blocks[0]), {GetParam(), 0, 0}, true);
-    std::set<EaseReason> reasons;
-    for (const PoleEase& ease : trace.eases) reasons.insert(ease.reason);
+    std::set<RelaxedReason> reasons;
+    for (const RelaxedAxis& relaxed_axis : trace.relaxed_axes) reasons.insert(relaxed_axis.reason);
     return reasons;
   };
-  for (const EaseReason reason : reasons_of(WristPass(robot, 1), units::rad_from_deg(0.05))) {
-    EXPECT_TRUE(reason == EaseReason::kThroughWrist || reason == EaseReason::kPastWrist)
+  for (const RelaxedReason reason : reasons_of(WristPass(robot, 1), units::rad_from_deg(0.05))) {
+    EXPECT_TRUE(reason == RelaxedReason::kThroughWrist || reason == RelaxedReason::kPastWrist)
         << name_of(reason);
   }
   const auto at_both = reasons_of(BothPass(robot, 1), 0.01);
-  EXPECT_TRUE(at_both.contains(EaseReason::kThroughBoth) ||
-              at_both.contains(EaseReason::kPastBoth));
+  EXPECT_TRUE(at_both.contains(RelaxedReason::kThroughBoth) ||
+              at_both.contains(RelaxedReason::kPastBoth));
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, RobotPasses,

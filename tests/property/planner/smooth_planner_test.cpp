@@ -138,12 +138,12 @@ TEST(SmoothPlanner, EasesTheAxisAsFarAsThePoleHasATolerance) {
   const JointVector start = joints_of(model, blocks[0]);
   const double exact_s = plan_smooth(model, blocks, start).duration_s();
   model.tolerances.pole_axis_rad = units::rad_from_deg(0.12);
-  const SmoothTrace eased = plan_smooth(model, blocks, start);
-  const LimitUse use = measure_limits(model, sample(model, eased, 250e-6, 0.37, start), 250e-6);
+  const SmoothTrace relaxed = plan_smooth(model, blocks, start);
+  const LimitUse use = measure_limits(model, sample(model, relaxed, 250e-6, 0.37, start), 250e-6);
   EXPECT_LE(std::max({use.v, use.a, use.j}), kLimit) << use.where;
-  std::printf("at 0.11 deg: %.3f s exact, %.3f s eased\n", exact_s, eased.duration_s());
+  std::printf("at 0.11 deg: %.3f s exact, %.3f s relaxed\n", exact_s, relaxed.duration_s());
   EXPECT_GT(exact_s, 3);
-  EXPECT_LT(eased.duration_s(), 1);
+  EXPECT_LT(relaxed.duration_s(), 1);
 }
 
 /// The hostile program with its axes drawn into what a stage reaches, and weak sliders.

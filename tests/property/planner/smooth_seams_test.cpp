@@ -68,7 +68,7 @@ TEST(SmoothSeams, RefusesWhatLeavesTravelAtTheEndOfASlowCut) {
   EXPECT_NEAR(static_cast<double>(trace.last.reject.sequence), 12, 1);
 }
 
-/// A run that ends a hundredth of a degree beside the pole is eased onto it: C stands anywhere.
+/// A run that ends a hundredth of a degree beside the pole is relaxed onto it: C stands anywhere.
 TEST(SmoothSeams, GoesOnFromWhereARunEndedBesideThePole) {
   const Vector3 tilted(std::sin(0.26), 0, std::cos(0.26)), beside(1.2e-4, 1.2e-4, 1);
   for (const MachineModel& model : {bench_machine(), lai_machine()}) {

@@ -45,7 +45,7 @@ class PatientReader {
 
 struct SmoothTrace : Trace {
   int tails = 0;  ///< pieces of tails that were run
-  std::vector<PoleEase> eases;
+  std::vector<RelaxedAxis> relaxed_axes;
   std::vector<Rewind> rewinds;
 };
 
@@ -69,7 +69,8 @@ SmoothTrace plan_smooth(const MachineModel& model, const std::vector<ClBlock>& b
       if (trace.last.status != PlanStatus::kNoRoom) break;
       reader.read(trace, false);
     }
-    for (PoleEase ease; planner.take_ease(ease);) trace.eases.push_back(ease);
+    for (RelaxedAxis relaxed_axis; planner.take_relaxed_axis(relaxed_axis);)
+      trace.relaxed_axes.push_back(relaxed_axis);
     for (Rewind one; planner.take_rewind(one);) trace.rewinds.push_back(one);
     if (trace.last.status != PlanStatus::kOk) break;
     if (reads(n)) reader.read(trace, dry(n));

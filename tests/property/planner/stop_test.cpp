@@ -61,7 +61,7 @@ ClBlock cut(std::uint64_t sequence, const Vector3& tip, const Vector3& axis) {
 }
 
 TEST(StopMargin, LeavesRoomForRoundingBesideThePole) {
-  // From just outside the ease, where C is made of the last digits of the axis, at 8 kHz.
+  // From just outside the axis deviation, where C is made of the last digits of the axis, at 8 kHz.
   constexpr std::uint64_t kSeed = 4711;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   RandomPrograms draw(kSeed);

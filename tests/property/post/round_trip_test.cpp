@@ -27,7 +27,7 @@ constexpr int kPrograms = 12;
 constexpr int kLength = 10;
 constexpr int kSamples = 8;              // of every NC block, ends included
 constexpr double kPointTip_mm = 3e-3;    // words have 1e-4 mm and 1e-5 deg; 1.5 m of arm
-constexpr double kPointAxis_rad = 2e-5;  // easing onto the pole and a rounded angle
+constexpr double kPointAxis_rad = 2e-5;  // relaxing onto the pole and a rounded angle
 constexpr double kRounding = 1e-6;       // of a tolerance
 
 /// Where the part lies so that the machine reaches it.

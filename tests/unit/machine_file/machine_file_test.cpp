@@ -27,7 +27,7 @@ TEST(MachineFile, GivesTheConstantsOfTheLaiMachine) {
   EXPECT_FALSE(model.default_unit_mm || model.default_unit_inch);
   EXPECT_DOUBLE_EQ(model.max_feed_mm_per_s, 500);
   EXPECT_DOUBLE_EQ(model.tolerances.axis_rad, units::rad_from_deg(0.1));
-  EXPECT_EQ(model.pole_policy, PolePolicy::kEase);
+  EXPECT_EQ(model.pole_policy, PolePolicy::kRelax);
   EXPECT_EQ(model.override_ramp_s, 1);
   EXPECT_EQ(model.X_MW.rotation, Eigen::Matrix3d::Identity());
 }

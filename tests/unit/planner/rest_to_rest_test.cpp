@@ -142,8 +142,8 @@ TEST(RestToRest, WastesLittleOfTheFastestMotionFromRestToRest) {
 TEST(RestToRest, EasesTheAxisOnlyOntoThePoleAndSaysSo) {
   Bench bench;
   ASSERT_EQ(bench.plan(cut(0, {0, 0, 20}, tilted(0.3, 0))).status, PlanStatus::kOk);
-  const PlanResult eased = bench.plan(cut(1, {10, 0, 20}, tilted(5e-6, 2)));
-  EXPECT_NEAR(eased.axis_deviation_rad, 5e-6, 1e-12);
+  const PlanResult relaxed = bench.plan(cut(1, {10, 0, 20}, tilted(5e-6, 2)));
+  EXPECT_NEAR(relaxed.axis_deviation_rad, 5e-6, 1e-12);
   EXPECT_NEAR(bench.planner.joints()[4], 0, 1e-15);
   const PlanResult exact = bench.plan(cut(2, {20, 0, 20}, tilted(1e-5, 2)));
   EXPECT_EQ(exact.axis_deviation_rad, 0);

@@ -157,23 +157,23 @@ TEST(ExplainSmooth, ReportsTheBlocksWhoseAxisWasEasedBesideThePoleAndWhy) {
   MachineModel model = machine(Transition::kSmooth);
   const Explained out = explain(kPastThePole, model);
   const SimulateReport& report = out.run.report;
-  ASSERT_EQ(report.ease_count, 1U);
-  const PoleEase& ease = report.eases[0];
-  EXPECT_LE(ease.first_line, 7U);
-  EXPECT_GE(ease.last_line, 7U);
+  ASSERT_EQ(report.relaxed_count, 1U);
+  const RelaxedAxis& relaxed_axis = report.relaxed_axes[0];
+  EXPECT_LE(relaxed_axis.first_line, 7U);
+  EXPECT_GE(relaxed_axis.last_line, 7U);
   // The pass takes 0.05 deg; the stretch reaches 20 mm to either side, and what smoothing takes at
   // the corners there is in it, of the blocks from line 5 on.
-  EXPECT_NEAR(units::deg_from_rad(ease.deviation_rad), 0.063, 0.003);
-  EXPECT_LE(ease.deviation_rad, model.tolerances.axis_rad);
-  EXPECT_EQ(ease.first_line, 5U);
-  EXPECT_EQ(ease.reason, EaseReason::kThrough);
-  EXPECT_EQ(out.at_line(7).eased_rad, ease.deviation_rad);
+  EXPECT_NEAR(units::deg_from_rad(relaxed_axis.deviation_rad), 0.063, 0.003);
+  EXPECT_LE(relaxed_axis.deviation_rad, model.tolerances.axis_rad);
+  EXPECT_EQ(relaxed_axis.first_line, 5U);
+  EXPECT_EQ(relaxed_axis.reason, RelaxedReason::kThrough);
+  EXPECT_EQ(out.at_line(7).relaxed_rad, relaxed_axis.deviation_rad);
   EXPECT_NE(to_text(report, model).find("deg, through the pole"), std::string::npos)
       << to_text(report, model);
 
   model.pole_policy = PolePolicy::kExact;
   const Explained exact = explain(kPastThePole, model);
-  EXPECT_EQ(exact.run.report.ease_count, 0U);
+  EXPECT_EQ(exact.run.report.relaxed_count, 0U);
   EXPECT_GT(exact.run.report.program_s, report.program_s + 1);
 }
 

@@ -29,17 +29,18 @@ TEST(Words, NameJointLineValueAndRemedyOfAnAlarm) {
 }
 
 TEST(Words, SayWhereTheAxisIsEasedByHowMuchAndWhy) {
-  const PoleEase ease{7, 9, 41, 43, units::rad_from_deg(0.05), EaseReason::kThrough};
-  EXPECT_EQ(describe(ease), "lines 41 to 43: tool axis eased by 0.0500 deg, through the pole");
+  const RelaxedAxis relaxed_axis{7, 9, 41, 43, units::rad_from_deg(0.05), RelaxedReason::kThrough};
+  EXPECT_EQ(describe(relaxed_axis),
+            "lines 41 to 43: tool axis relaxed by 0.0500 deg, through the pole");
 }
 
 TEST(Words, NameTheSingularityThatARobotPasses) {
-  PoleEase ease{7, 9, 41, 43, units::rad_from_deg(0.05), EaseReason::kThroughWrist};
-  EXPECT_EQ(describe(ease),
-            "lines 41 to 43: tool axis eased by 0.0500 deg, through the wrist singularity");
-  ease.reason = EaseReason::kPastBoth;
-  EXPECT_EQ(describe(ease),
-            "lines 41 to 43: tool axis eased by 0.0500 deg, past the wrist and shoulder "
+  RelaxedAxis relaxed_axis{7, 9, 41, 43, units::rad_from_deg(0.05), RelaxedReason::kThroughWrist};
+  EXPECT_EQ(describe(relaxed_axis),
+            "lines 41 to 43: tool axis relaxed by 0.0500 deg, through the wrist singularity");
+  relaxed_axis.reason = RelaxedReason::kPastBoth;
+  EXPECT_EQ(describe(relaxed_axis),
+            "lines 41 to 43: tool axis relaxed by 0.0500 deg, past the wrist and shoulder "
             "singularities");
 }
 

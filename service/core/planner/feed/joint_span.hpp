@@ -5,7 +5,7 @@
 
 #include "meridian/path/band_span.hpp"
 #include "meridian/path/path_piece.hpp"
-#include "meridian/planner/pole_ease.hpp"
+#include "meridian/planner/relaxed_axis.hpp"
 
 namespace meridian {
 
@@ -19,9 +19,9 @@ struct JointSpan {
   FreeQuintic roll{};           ///< the roll, where that is driven besides the yaw
   double axis_deviation_rad =
       0;  ///< largest angle by which driving the redundant joint moves the axis
-  EaseReason reason = EaseReason::kBeside;  ///< why, where driven
-  double feed_factor = 1;                   ///< FeedFactors::label
-  BlockMarks marks{};                       ///< blocks that end on the span
+  RelaxedReason reason = RelaxedReason::kBeside;  ///< why, where driven
+  double feed_factor = 1;                         ///< FeedFactors::label
+  BlockMarks marks{};                             ///< blocks that end on the span
 };
 
 /// `span` from x = `from` on, `length` long.

@@ -66,7 +66,7 @@ void RestToRestPlanner::set_free_cone(double rad) noexcept {
 
 void RestToRestPlanner::set_pole_tolerance(double rad) noexcept {
   Workspace& w = *workspace_;
-  w.on_pole_rad = std::max(kPoleEase_rad, kLegToleranceShare * rad);
+  w.on_pole_rad = std::max(kPoleDeviation_rad, kLegToleranceShare * rad);
   w.router.set_pole_tolerance(w.on_pole_rad);
 }
 

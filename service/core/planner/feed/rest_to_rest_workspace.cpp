@@ -103,7 +103,8 @@ void RestToRestPlanner::Workspace::stage(const ClBlock& block) noexcept {
   if (!is_finite(block)) return refuse(block, RejectCode::kNotFinite, -1, 0);
   if (is_motion(block.kind)) {
     stage_motion(block);
-    if (stage_state == Stage::kRefused && on_pole_rad > kPoleEase_rad) stage_as_programmed(block);
+    if (stage_state == Stage::kRefused && on_pole_rad > kPoleDeviation_rad)
+      stage_as_programmed(block);
   } else {
     stage_barrier(block);
   }
@@ -115,7 +116,7 @@ void RestToRestPlanner::Workspace::stage_as_programmed(const ClBlock& block) noe
   clear_stage();
   stage_state = Stage::kNothing;
   staged_approach = std::nullopt;
-  router.set_pole_tolerance(kPoleEase_rad);
+  router.set_pole_tolerance(kPoleDeviation_rad);
   stage_motion(block);
   router.set_pole_tolerance(on_pole_rad);
   if (stage_state == Stage::kRefused) result = refusal;

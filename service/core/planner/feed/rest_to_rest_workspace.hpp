@@ -28,7 +28,7 @@ struct RestToRestPlanner::Workspace {
   std::optional<Approach> staged_approach, approach;  ///< that is published and was not taken
   bool retracts_first = false;
   std::optional<JointVector> first_joints;
-  double on_pole_rad = kPoleEase_rad;  ///< what begin() or set_pole_tolerance() said
+  double on_pole_rad = kPoleDeviation_rad;  ///< what begin() or set_pole_tolerance() said
   enum class Stage : std::uint8_t {
     kNothing,
     kWhole,      ///< all of a block is staged

@@ -31,7 +31,7 @@ void SmoothRun::name_block_at(std::int64_t number, double x) noexcept {
 
 void SmoothRun::end_ahead_of_fault() noexcept {
   supply_ = Supply::kEnded;
-  note_ease(nullptr);
+  note_relaxed_axis(nullptr);
   // What is published may be run to its rests.
   std::int64_t least = 0;
   for (const OpenWindow& open : open_) least = std::max(least, open.rest_cell);

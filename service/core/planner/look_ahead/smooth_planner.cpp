@@ -22,7 +22,7 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   if (w.is_running()) w.end_run();  // no index comes twice
   w.plain.begin(at_rest, tool_length_mm, epoch, settings.retracts_first, settings.first_joints);
   w.settings = settings;
-  if (w.is_smooth() && w.model.pole_policy == PolePolicy::kEase) {
+  if (w.is_smooth() && w.model.pole_policy == PolePolicy::kRelax) {
     w.plain.set_free_cone(kOnPoleTolerances * w.tolerance().axis_rad);
   } else if (!w.is_smooth()) {
     w.plain.set_pole_tolerance(w.slack().axis_rad);
@@ -130,8 +130,9 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
       w.pose = w.plain.junction().pose;
       w.joints = w.plain.joints();
       if (result.axis_deviation_rad > 0) {
-        w.plain_eases.push_over_oldest({block.sequence, block.sequence, block.line, block.line,
-                                        result.axis_deviation_rad, EaseReason::kOnPole});
+        w.plain_relaxed_axes.push_over_oldest({block.sequence, block.sequence, block.line,
+                                               block.line, result.axis_deviation_rad,
+                                               RelaxedReason::kOnPole});
       }
     }
     return result;
@@ -163,9 +164,9 @@ bool SmoothPlanner::take_rewind(Rewind& out) noexcept {
   return workspace_->rewinds.take_oldest(out);
 }
 
-bool SmoothPlanner::take_ease(PoleEase& out) noexcept {
+bool SmoothPlanner::take_relaxed_axis(RelaxedAxis& out) noexcept {
   Workspace& w = *workspace_;
-  return w.run.take_ease(out) || w.plain_eases.take_oldest(out);
+  return w.run.take_relaxed_axis(out) || w.plain_relaxed_axes.take_oldest(out);
 }
 
 bool SmoothPlanner::take_feed_mark(FeedMark& out) noexcept { return workspace_->raise.take(out); }

@@ -12,7 +12,7 @@ namespace {
 
 /// More spans than the feed keeps cells: every cell lies in one span.
 constexpr std::size_t kSpans = 2048;
-constexpr std::size_t kEases = 256;  // that wait to be taken; the oldest go
+constexpr std::size_t kMaxRelaxedAxes = 256;  // that wait to be taken; the oldest go
 constexpr std::size_t kBlockEnds = 8192;
 constexpr double kSameCut_mm = 1e-9;  // of u, where spans were cut
 
@@ -34,7 +34,7 @@ SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise, PoleLookAhead*
       travel_(model),
       spans_(kSpans),
       ends_(kBlockEnds),
-      eases_(kEases) {}
+      relaxed_axes_(kMaxRelaxedAxes) {}
 
 void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
                       double pole_tolerance_rad) noexcept {
@@ -49,7 +49,7 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
   const int free = redundant_joint(model_);
   follows_free_ = model_.rewind_policy == RewindPolicy::kRetract && free >= 0 &&
                   !model_.joints[free].is_endless;
-  ease_.reset();
+  relaxed_axis_.reset();
   is_band_finished_ = false;
   fault_ = {};
   faulty_block_ = {};
@@ -164,7 +164,7 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
       end_ahead_of_fault();
     } else if (is_band_finished_ && !is_feed_finished() && !corridor_.needs_ahead()) {
       supply_ = Supply::kEnded;
-      note_ease(nullptr);
+      note_relaxed_axis(nullptr);
       (void)feed_.finish();
     } else {
       return Status::kNeedsBlocks;
@@ -174,7 +174,7 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
 
 bool SmoothRun::take_span(const JointSpan& span, double feed_override) noexcept {
   if (!follows_free_ || follow(span)) {
-    note_ease(&span);
+    note_relaxed_axis(&span);
     push(span, feed_override);
     if (supply_ == Supply::kRewound) supply_ = Supply::kFlowing;
     return true;
@@ -242,22 +242,23 @@ bool SmoothRun::follow(const JointSpan& span) noexcept {
   return !outside;
 }
 
-void SmoothRun::note_ease(const JointSpan* span) noexcept {
-  if (span != nullptr && ease_) {  // as far as the begin of a span that is exact again
-    ease_->last_sequence = span->band.sequence;
-    ease_->last_line = span->band.line;
+void SmoothRun::note_relaxed_axis(const JointSpan* span) noexcept {
+  if (span != nullptr && relaxed_axis_) {  // as far as the begin of a span that is exact again
+    relaxed_axis_->last_sequence = span->band.sequence;
+    relaxed_axis_->last_line = span->band.line;
   }
   const bool deviates = span != nullptr && span->axis_deviation_rad > 0;
-  if (ease_ && (!deviates || span->reason != ease_->reason)) {
-    eases_.push_over_oldest(*ease_);
-    ease_.reset();
+  if (relaxed_axis_ && (!deviates || span->reason != relaxed_axis_->reason)) {
+    relaxed_axes_.push_over_oldest(*relaxed_axis_);
+    relaxed_axis_.reset();
   }
   if (!deviates) return;
   const BandSpan& band = span->band;
-  if (!ease_) {
-    ease_ = PoleEase{band.sequence, band.sequence, band.line, band.line, 0, span->reason};
+  if (!relaxed_axis_) {
+    relaxed_axis_ =
+        RelaxedAxis{band.sequence, band.sequence, band.line, band.line, 0, span->reason};
   }
-  ease_->deviation_rad = std::max(ease_->deviation_rad, span->axis_deviation_rad);
+  relaxed_axis_->deviation_rad = std::max(relaxed_axis_->deviation_rad, span->axis_deviation_rad);
 }
 
 const JointSpan* SmoothRun::next_span() noexcept {

@@ -9,7 +9,7 @@
 #include "meridian/path/band_spline.hpp"
 #include "meridian/path/block_reject.hpp"
 #include "meridian/planner/motion_port.hpp"
-#include "meridian/planner/pole_ease.hpp"
+#include "meridian/planner/relaxed_axis.hpp"
 #include "meridian/planner/rewind.hpp"
 #include "service/core/path/index_ring.hpp"
 #include "service/core/planner/feed/feed_raise.hpp"
@@ -53,7 +53,7 @@ class SmoothRun : public RewindTrial {
   /// `raise` says what the feed is planned with, `look_ahead` how far ways behind the pole carry.
   SmoothRun(const MachineModel& model, FeedRaise& raise, PoleLookAhead* look_ahead = nullptr);
 
-  /// `pole_tolerance_rad`: of the axis beside the pole, smoothing and ease together.
+  /// `pole_tolerance_rad`: of the axis beside the pole, smoothing and axis deviation together.
   void begin(const RunStart& start, const BandTolerance& tolerance,
              double pole_tolerance_rad) noexcept;
 
@@ -86,7 +86,9 @@ class SmoothRun : public RewindTrial {
   void go_on(const RewindTarget& target, std::uint64_t path_index, std::uint32_t window) noexcept;
 
   /// Takes the oldest stretch beside the pole on which the axis was moved; false if there is none.
-  [[nodiscard]] bool take_ease(PoleEase& out) noexcept { return eases_.take_oldest(out); }
+  [[nodiscard]] bool take_relaxed_axis(RelaxedAxis& out) noexcept {
+    return relaxed_axes_.take_oldest(out);
+  }
 
   /// Names for what follows the run, and the joints at its end.
   [[nodiscard]] std::uint64_t next_path_index() const noexcept {
@@ -134,7 +136,7 @@ class SmoothRun : public RewindTrial {
   /// Starts the feed where the machine rests.
   void begin_feed(int branch) noexcept;
   /// Keeps account of stretches beside the pole; `span` nullptr: the path ends.
-  void note_ease(const JointSpan* span) noexcept;
+  void note_relaxed_axis(const JointSpan* span) noexcept;
   void fail(const PathFault& fault, std::uint64_t sequence, std::uint32_t line) noexcept;
   void fail_on_span() noexcept;
   void fail_ahead() noexcept;
@@ -171,8 +173,8 @@ class SmoothRun : public RewindTrial {
   Supply supply_ = Supply::kFlowing;
   JointSpan held_;
   BlockReject rewind_at_;
-  std::optional<PoleEase> ease_;  ///< going on
-  IndexRing<PoleEase> eases_;
+  std::optional<RelaxedAxis> relaxed_axis_;  ///< going on
+  IndexRing<RelaxedAxis> relaxed_axes_;
   PathFault fault_;
   BlockReject faulty_block_;
 };

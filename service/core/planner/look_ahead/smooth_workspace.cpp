@@ -30,8 +30,8 @@ BandTolerance SmoothPlanner::Workspace::tolerance() const noexcept {
       settings.axis_tolerance_rad > 0 ? settings.axis_tolerance_rad : model.tolerances.axis_rad;
   out.tip_mm = std::max(out.tip_mm, kMinTipTolerance_mm);
   out.axis_rad = std::max(out.axis_rad, kMinAxisTolerance_rad);
-  const bool eases = redundant_joint(model) >= 0 && model.pole_policy == PolePolicy::kEase;
-  if (eases) out.pole = to_array(pole_direction(model));
+  const bool relaxed_axes = redundant_joint(model) >= 0 && model.pole_policy == PolePolicy::kRelax;
+  if (relaxed_axes) out.pole = to_array(pole_direction(model));
   return out;
 }
 
@@ -45,7 +45,7 @@ std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const
   if (block.feed_meaning == FeedMeaning::kTip && model.max_feed_mm_per_s > 0) {
     block.feed = std::min(block.feed, model.max_feed_mm_per_s);
   }
-  if (redundant_joint(model) >= 0 && pole_distance(model, axis) < kPoleEase_rad) {
+  if (redundant_joint(model) >= 0 && pole_distance(model, axis) < kPoleDeviation_rad) {
     axis = find_nearest_pole(model, axis);
   }
   block.axis = to_array(axis);
@@ -58,7 +58,7 @@ std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const
   // leads off it from rest, out of the tolerance, is done at rest, where the redundant joint can
   // turn.
   const bool starts_on_pole = is_on_pole(pose.axis);
-  const bool may_linger = model.pole_policy == PolePolicy::kEase;
+  const bool may_linger = model.pole_policy == PolePolicy::kRelax;
   if (axis == pose.axis) {
     const bool may_go_on = !starts_on_pole || running != Running::kThrough || may_linger;
     return may_go_on ? std::optional(block) : std::nullopt;
@@ -126,12 +126,12 @@ void SmoothPlanner::Workspace::begin_run(const ClBlock& cut) noexcept {
 void SmoothPlanner::Workspace::end_run() noexcept {
   RestToRestPlanner::Junction at = plain.junction();
   at.joints = joints = run.joints();
-  // Eased beside the pole, or behind a block too short for a span, the tool is not quite where the
-  // last block put it: what follows starts from where it is.
-  // Beside the pole rounding of the axis alone turns the redundant joint.
+  // Relaxed beside the pole, or behind a block too short for a span, the tool is not quite where
+  // the last block put it: what follows starts from where it is. Beside the pole rounding of the
+  // axis alone turns the redundant joint.
   const ToolPose there = forward(model, at.tool_length_mm, joints);
   const double from_pole = redundant_joint(model) >= 0 ? pole_distance(model, pose.axis) : 1;
-  const bool is_beside_pole = from_pole >= kPoleEase_rad && from_pole < kBesidePole_rad;
+  const bool is_beside_pole = from_pole >= kPoleDeviation_rad && from_pole < kBesidePole_rad;
   const bool is_same =
       (there.tip - pose.tip).norm() <= kSameTip_mm && (there.axis - pose.axis).norm() <= kSameAxis;
   if (is_beside_pole || !is_same) pose = there;

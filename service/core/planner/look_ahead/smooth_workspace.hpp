@@ -27,8 +27,8 @@ namespace meridian {
 /// turns: which block may be run on through, where a run begins and ends, and what is done at rest
 /// between. Memory: all of it at the start. Units: mm, rad, s.
 struct SmoothPlanner::Workspace {
-  static constexpr std::size_t kMaxRewinds = 256;  ///< that wait to be taken; the oldest go
-  static constexpr std::size_t kEases = 256;       ///< the same
+  static constexpr std::size_t kMaxRewinds = 256;      ///< that wait to be taken; the oldest go
+  static constexpr std::size_t kMaxRelaxedAxes = 256;  ///< the same
 
   /// Which blocks come.
   enum class Intake : std::uint8_t {
@@ -55,7 +55,7 @@ struct SmoothPlanner::Workspace {
         raise(m),
         window(m, has_branches(m)),
         run(m, raise, has_branches(m) ? &window : nullptr),
-        plain_eases(kEases),
+        plain_relaxed_axes(kMaxRelaxedAxes),
         rewinds(kMaxRewinds) {
     if (has_branches(m)) plain.ask(&window);
   }
@@ -71,8 +71,9 @@ struct SmoothPlanner::Workspace {
   /// How far the blocks may be cut from where they are programmed.
   [[nodiscard]] AheadSlack slack() const noexcept {
     if (is_smooth()) return {tolerance().tip_mm, pole_tolerance_rad()};
-    const bool eases = redundant_joint(model) >= 0 && model.pole_policy == PolePolicy::kEase;
-    if (!eases || settings.ends_exactly) return {};
+    const bool relaxed_axes =
+        redundant_joint(model) >= 0 && model.pole_policy == PolePolicy::kRelax;
+    if (!relaxed_axes || settings.ends_exactly) return {};
     const double asked_rad = settings.axis_tolerance_rad;
     return {0, asked_rad > 0 ? asked_rad : model.tolerances.axis_beside_pole_rad()};
   }
@@ -136,8 +137,8 @@ struct SmoothPlanner::Workspace {
   Intake intake = Intake::kOpen;
   Running running = Running::kNone;
   Decided decided = Decided::kNothing;
-  std::optional<PlanResult> refusal;  ///< the program cannot go on
-  IndexRing<PoleEase> plain_eases;    ///< of blocks from rest to rest
+  std::optional<PlanResult> refusal;          ///< the program cannot go on
+  IndexRing<RelaxedAxis> plain_relaxed_axes;  ///< of blocks from rest to rest
   IndexRing<Rewind> rewinds;
   std::size_t looked_at = 0;        ///< blocks of the begin
   std::uint64_t replayed_look = 0;  ///< blocks that a run before was begun with; 0: none was

@@ -47,7 +47,7 @@ AheadFollower::AheadFollower(const MachineModel& model, double tool_length_mm,
       ways_(ways) {
   const auto at = solve(model_, tool_length_mm_, start, branch_, JointVector{});
   const double distance = pole_distance(model_, start.axis);
-  is_over_ = at.status != SolveStatus::kOk || distance < kPoleEase_rad;
+  is_over_ = at.status != SolveStatus::kOk || distance < kPoleDeviation_rad;
   has_left_pole_ = distance >= pole_rad_;
   is_branch_certain_ = has_left_pole_ || !(slack.axis_rad > 0);
   joints_ = at.q;
@@ -100,7 +100,7 @@ bool AheadFollower::put_at(const ToolPose& pose, double feed_s) noexcept {
   const auto at = solve(model_, tool_length_mm_, pose, branch_, joints_);
   const double distance = pole_distance(model_, pose.axis);
   has_left_pole_ |= distance >= pole_rad_;
-  const double nearest = has_left_pole_ ? pole_rad_ : kPoleEase_rad;
+  const double nearest = has_left_pole_ ? pole_rad_ : kPoleDeviation_rad;
   if (at.status != SolveStatus::kOk || distance < nearest) return false;
   double time_s = feed_s;
   for (int i = 0; i < model_.joint_count; ++i) {

@@ -301,7 +301,7 @@ PathFault Router::find_target_fault(const ToolPose& target,
 PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept {
   deviation_rad_ = 0;
   const ToolPose target{block.is_arc ? find_arc_begin(block) : to_vector(block.tip_mm),
-                        eased(to_vector(block.axis), kPoleEase_rad)};
+                        relaxed(to_vector(block.axis), kPoleDeviation_rad)};
   Ways ways = find_ways(target, cursor);
   const int free = redundant_joint(model_);
   // Room to turn counts as well: a winding at the end of travel is taken only where no other is.

@@ -27,7 +27,7 @@ constexpr double kInside = 0.98;  // of the reach, all of a block for certain
 
 }  // namespace
 
-Vector3 Router::eased(const Vector3& axis, double within_rad) noexcept {
+Vector3 Router::relaxed(const Vector3& axis, double within_rad) noexcept {
   const double distance = pole_distance(model_, axis);
   if (!(distance < within_rad)) return axis;
   deviation_rad_ = std::max(deviation_rad_, distance);
@@ -35,7 +35,7 @@ Vector3 Router::eased(const Vector3& axis, double within_rad) noexcept {
 }
 
 bool Router::is_at_pole(const Vector3& axis) const noexcept {
-  return redundant_joint(model_) >= 0 && pole_distance(model_, axis) < kPoleEase_rad;
+  return redundant_joint(model_) >= 0 && pole_distance(model_, axis) < kPoleDeviation_rad;
 }
 
 Router::Job Router::job_of(const ClBlock& block) const noexcept {
@@ -204,11 +204,11 @@ PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) 
   Job job = job_of(block);
   const bool is_timed = job.share_per_s > 0;
   const Vector3 programmed = to_vector(block.axis);
-  if (on_pole_rad_ > kPoleEase_rad && (!is_timed || is_at_pole(cursor.pose.axis))) {
+  if (on_pole_rad_ > kPoleDeviation_rad && (!is_timed || is_at_pole(cursor.pose.axis))) {
     const bool is_fixed = angle_between(cursor.pose.axis, programmed) < kNoTurn_rad;
     if (!is_fixed) job.on_pole_rad = on_pole_rad_;
   }
-  const ToolPose end{to_vector(block.tip_mm), eased(programmed, job.on_pole_rad)};
+  const ToolPose end{to_vector(block.tip_mm), relaxed(programmed, job.on_pole_rad)};
   PathPiece path = block.is_arc ? make_arc(cursor.pose, end, block) : make_line(cursor.pose, end);
   if (path.axis_turn < kNoTurn_rad) {
     path = with_axes(path, cursor.pose.axis, cursor.pose.axis);
@@ -218,11 +218,11 @@ PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) 
   cursor.cut_mm_per_s = is_timed                         ? job.share_per_s * tip_length(path)
                         : job.motion == MotionKind::kCut ? job.feed_mm_per_s
                                                          : 0;
-  if (is_timed && cursor.eased_from) {
-    job.share_per_s = bound_turn(path, angle_between(*cursor.eased_from, programmed),
+  if (is_timed && cursor.relaxed_from) {
+    job.share_per_s = bound_turn(path, angle_between(*cursor.relaxed_from, programmed),
                                  before_mm_per_s, job.share_per_s);
   }
-  cursor.eased_from = deviation_rad_ > 0 ? std::optional(programmed) : std::nullopt;
+  cursor.relaxed_from = deviation_rad_ > 0 ? std::optional(programmed) : std::nullopt;
   if (!(path.length > kNoTip_mm)) return {};
   const int free = redundant_joint(model_);
   PathFault fault;

@@ -28,9 +28,9 @@ struct PlanCursor {
   std::uint64_t path_index = 0;
   std::uint32_t window = 0;
   std::uint16_t epoch = 0;
-  bool has_retracted = false;           ///< the approach goes on from where retract() led
-  double cut_mm_per_s = 0;              ///< that the cut that ended there asks for; 0: none did
-  std::optional<Vector3> eased_from{};  ///< where the pose's axis was programmed, if not there
+  bool has_retracted = false;             ///< the approach goes on from where retract() led
+  double cut_mm_per_s = 0;                ///< that the cut that ended there asks for; 0: none did
+  std::optional<Vector3> relaxed_from{};  ///< where the pose's axis was programmed, if not there
 };
 
 /// Finds the legs of a motion block: which branch and winding, where it stops on the pole, and the
@@ -103,11 +103,11 @@ class Router {
   /// Whether any branch and winding puts the tool on the block's end.
   [[nodiscard]] bool is_reachable(const ClBlock& block, const PlanCursor& cursor) const noexcept;
 
-  /// Largest ease of the axis in the last route().
+  /// Largest deviation of the axis in the last route().
   [[nodiscard]] double axis_deviation_rad() const noexcept { return deviation_rad_; }
 
   /// `axis`, or the pole itself where that is nearer than `within_rad`.
-  [[nodiscard]] Vector3 eased(const Vector3& axis, double within_rad) noexcept;
+  [[nodiscard]] Vector3 relaxed(const Vector3& axis, double within_rad) noexcept;
 
  private:
   static constexpr int kMaxWays = 24;
@@ -136,12 +136,12 @@ class Router {
     double feed_mm_per_s = 0;
     double share_per_s = 0;
     double feed_factor = 1;
-    double on_pole_rad = kPoleEase_rad;  ///< axes nearer to the pole count as on it
+    double on_pole_rad = kPoleDeviation_rad;  ///< axes nearer to the pole count as on it
   };
 
   [[nodiscard]] Job job_of(const ClBlock& block) const noexcept;
-  /// From where it was eased to, the axis turns farther along `path` than the `programmed_rad` that
-  /// its block in inverse time asks for: no faster than (1.6) of docs/motion.md, behind a cut
+  /// From where it was relaxed to, the axis turns farther along `path` than the `programmed_rad`
+  /// that its block in inverse time asks for: no faster than (1.6) of docs/motion.md, behind a cut
   /// that asks for `before_mm_per_s`. What is left of `share_per_s`.
   [[nodiscard]] double bound_turn(const PathPiece& path, double programmed_rad,
                                   double before_mm_per_s, double share_per_s) const noexcept;
@@ -246,7 +246,7 @@ class Router {
   ToolPose left_{Vector3::Zero(), Vector3::UnitZ()};  ///< where the last retract() began
   double feed_factor_ = 1;
   double free_cone_rad_ = 0;
-  double on_pole_rad_ = kPoleEase_rad;
+  double on_pole_rad_ = kPoleDeviation_rad;
   double deviation_rad_ = 0;
 };
 

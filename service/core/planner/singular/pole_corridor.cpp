@@ -38,7 +38,8 @@ void PoleCorridor::begin(const Start& start) noexcept {
   has_pole_ = redundant_joint(model_) >= 0 && !start.is_on_pole;
   tool_length_mm_ = start.tool_length_mm;
   is_exact_ = model_.pole_policy == PolePolicy::kExact;
-  tolerance_rad_ = is_exact_ ? kPoleEase_rad : std::max(start.tolerance_rad, kPoleEase_rad);
+  tolerance_rad_ =
+      is_exact_ ? kPoleDeviation_rad : std::max(start.tolerance_rad, kPoleDeviation_rad);
   programmed_.begin(start.axis);
   probes_.begin(has_pole_);
   stretches_.begin(tolerance_rad_);
@@ -180,11 +181,11 @@ bool PoleCorridor::may_be_exact(const PolePlace& place) const noexcept {
 
 /// Whether the path meets the pole on the stretch.
 bool PoleCorridor::is_on_pole(const PoleStretch& stretch) const noexcept {
-  if (probes_.distance_at(stretch.nearest) < kPoleEase_rad) return true;
+  if (probes_.distance_at(stretch.nearest) < kPoleDeviation_rad) return true;
   for (PoleProbes::Place n = stretch.first; n <= stretch.last; ++n) {
-    if (probes_.distance_of(n) < kPoleEase_rad) return true;
-    const bool is_passed =
-        stretches_.is_minimum(n) && probes_.distance_at(probes_.find_nearest(n)) < kPoleEase_rad;
+    if (probes_.distance_of(n) < kPoleDeviation_rad) return true;
+    const bool is_passed = stretches_.is_minimum(n) &&
+                           probes_.distance_at(probes_.find_nearest(n)) < kPoleDeviation_rad;
     if (is_passed) return true;
   }
   return false;
@@ -290,9 +291,9 @@ void PoleCorridor::emit() noexcept {
     out_.free = part_of(zone.free, begin <= zone.begin ? 0 : (begin - zone.begin) / h,
                         end >= zone.end ? 1 : (end - zone.begin) / h);
     out_.axis_deviation_rad = zone.deviation_rad;
-    out_.reason = zone.is_through                      ? EaseReason::kThrough
-                  : zone.deviation_rad < kPoleEase_rad ? EaseReason::kOnPole
-                                                       : EaseReason::kBeside;
+    out_.reason = zone.is_through                           ? RelaxedReason::kThrough
+                  : zone.deviation_rad < kPoleDeviation_rad ? RelaxedReason::kOnPole
+                                                            : RelaxedReason::kBeside;
   }
   if (has_zone && end >= zone.end) {
     out_course_ = {zone.branch_after, zone.is_held, held_rate_of(zone)};

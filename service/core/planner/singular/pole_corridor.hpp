@@ -132,7 +132,7 @@ class PoleCorridor {
   const MachineModel& model_;
   PoleLookAhead* look_ahead_;
   bool has_pole_ = false;  ///< one that matters
-  bool is_exact_ = false;  ///< of the policies the one that never eases
+  bool is_exact_ = false;  ///< of the policies the one that never relaxes the axis
   double tool_length_mm_ = 0, tolerance_rad_ = 0;
   ProgrammedAxis programmed_;
   PoleProbes probes_;  ///< spans that are held back

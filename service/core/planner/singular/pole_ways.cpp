@@ -47,15 +47,15 @@ PathFault Router::enter_pole(const PathPiece& path, const Job& job, double share
                              PlanCursor& cursor, Staging& out) noexcept {
   const int free = redundant_joint(model_);
   const bool is_near = path.axis_turn <= kNearPole_rad;
-  if (is_near || is_straight_passage(path, cursor.joints[free], cursor, kPoleEase_rad)) {
+  if (is_near || is_straight_passage(path, cursor.joints[free], cursor, kPoleDeviation_rad)) {
     return run_held(path, cursor.joints[free], job, share, cursor, out);
   }
   const double far = 1 - kNearPole_rad / path.axis_turn;
   PathFault fault = run_solved(cut_piece(path, 0, far), job, share * far, cursor, out);
   if (is_fault(fault)) return fault;
   const PathPiece last = cut_piece(path, far, 1);
-  // Keeps account of the ease.
-  (void)is_straight_passage(last, cursor.joints[free], cursor, kPoleEase_rad);
+  // Keeps account of the axis deviation.
+  (void)is_straight_passage(last, cursor.joints[free], cursor, kPoleDeviation_rad);
   return run_held(last, cursor.joints[free], job, share * (1 - far), cursor, out);
 }
 
@@ -66,7 +66,7 @@ PathFault Router::leave_pole_by(const PathPiece& path, const JointVector& end, c
   PlanCursor turned = cursor;
   turned.joints[free] = end[free];
   const bool is_near = path.axis_turn <= kNearPole_rad;
-  if (is_near || is_straight_passage(path, end[free], turned, kPoleEase_rad)) {
+  if (is_near || is_straight_passage(path, end[free], turned, kPoleDeviation_rad)) {
     const PathFault fault = turn_free(pole, end[free], job, cursor, out);
     return is_fault(fault) ? fault : run_held(path, cursor.joints[free], job, 1.0, cursor, out);
   }
@@ -75,7 +75,7 @@ PathFault Router::leave_pole_by(const PathPiece& path, const JointVector& end, c
   PathFault fault = turn_free(pole, limit, job, cursor, out);
   if (is_fault(fault)) return fault;
   const PathPiece first = cut_piece(path, 0, near);
-  (void)is_straight_passage(first, cursor.joints[free], cursor, kPoleEase_rad);
+  (void)is_straight_passage(first, cursor.joints[free], cursor, kPoleDeviation_rad);
   fault = run_held(first, cursor.joints[free], job, near, cursor, out);
   if (is_fault(fault)) return fault;
   return run_solved(cut_piece(path, near, 1), job, 1 - near, cursor, out);

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "meridian/kinematics/solve_driven.hpp"
-#include "meridian/planner/pole_ease.hpp"
+#include "meridian/planner/relaxed_axis.hpp"
 #include "service/core/planner/singular/pole_zone.hpp"
 #include "service/core/planner/singular/programmed_tip.hpp"
 
@@ -48,12 +48,12 @@ struct RobotPass {
 };
 
 /// Why a pass moves the axis.
-[[nodiscard]] constexpr EaseReason reason_of(const RobotPass& pass) noexcept {
+[[nodiscard]] constexpr RelaxedReason reason_of(const RobotPass& pass) noexcept {
   const bool is_turned = pass.branch_after != pass.branch_before;
   if (pass.at == SingularSet::kWristAndShoulder) {
-    return is_turned ? EaseReason::kThroughBoth : EaseReason::kPastBoth;
+    return is_turned ? RelaxedReason::kThroughBoth : RelaxedReason::kPastBoth;
   }
-  return is_turned ? EaseReason::kThroughWrist : EaseReason::kPastWrist;
+  return is_turned ? RelaxedReason::kThroughWrist : RelaxedReason::kPastWrist;
 }
 
 /// Where a pass may lie: about `nearest`, between `from` and `to`.

@@ -19,7 +19,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kMinPassPart_mm = 1e-6;
 /// Spans farther off than this are not held back.
 constexpr double kPassOutOfReach_rad = 0.6, kPassOutOfReach_mm = 100;
-/// Of the tip, where nothing may give: kPoleEase_rad at the end of a tool.
+/// Of the tip, where nothing may give: kPoleDeviation_rad at the end of a tool.
 constexpr double kExactTip_mm = 1e-3;
 constexpr Singularity kPlaces[] = {Singularity::kShoulder, Singularity::kWrist};
 
@@ -39,7 +39,7 @@ void RobotPasses::begin(const Start& start) noexcept {
   is_used_ = is_robot(model_);
   is_exact_ = model_.pole_policy == PolePolicy::kExact;
   axis_tolerance_rad_ =
-      is_exact_ ? kPoleEase_rad : std::max(start.axis_tolerance_rad, kPoleEase_rad);
+      is_exact_ ? kPoleDeviation_rad : std::max(start.axis_tolerance_rad, kPoleDeviation_rad);
   tip_tolerance_mm_ = is_exact_ ? kExactTip_mm : std::max(start.tip_tolerance_mm, kExactTip_mm);
   tool_length_mm_ = start.tool_length_mm;
   axes_.begin(start.pose.axis);

@@ -100,17 +100,17 @@ TEST(Router, PassesOverThePoleItselfWhereNoStraightPassageIsInsideTravel) {
 
 TEST(Router, TakesAxesNearThePoleForThePole) {
   Routed one(bench_machine());
-  EXPECT_EQ(one.router.eased(tilted(0.01, 1), 0.009), tilted(0.01, 1));
+  EXPECT_EQ(one.router.relaxed(tilted(0.01, 1), 0.009), tilted(0.01, 1));
   EXPECT_EQ(one.router.axis_deviation_rad(), 0);
-  EXPECT_EQ(one.router.eased(tilted(0.01, 1), 0.011), Vector3::UnitZ());
+  EXPECT_EQ(one.router.relaxed(tilted(0.01, 1), 0.011), Vector3::UnitZ());
   EXPECT_NEAR(one.router.axis_deviation_rad(), 0.01, 1e-9);
   one.stand_at({{0, 0, 0}, tilted(0.3, 0)});
-  ASSERT_FALSE(is_fault(one.route(cut({40, 0, 0}, tilted(0.5 * kPoleEase_rad, 2)))));
+  ASSERT_FALSE(is_fault(one.route(cut({40, 0, 0}, tilted(0.5 * kPoleDeviation_rad, 2)))));
   EXPECT_EQ(one.cursor.pose.axis, Vector3::UnitZ());
-  EXPECT_NEAR(one.router.axis_deviation_rad(), 0.5 * kPoleEase_rad, 1e-9);
-  ASSERT_TRUE(one.cursor.eased_from);
+  EXPECT_NEAR(one.router.axis_deviation_rad(), 0.5 * kPoleDeviation_rad, 1e-9);
+  ASSERT_TRUE(one.cursor.relaxed_from);
   ASSERT_FALSE(is_fault(one.route(cut({45, 0, 0}, tilted(0.3, 2)))));
-  EXPECT_FALSE(one.cursor.eased_from);
+  EXPECT_FALSE(one.cursor.relaxed_from);
   EXPECT_LT(one.router.axis_deviation_rad(), 1e-12) << "of each block by itself";
 }
 

@@ -51,7 +51,7 @@ TEST(PoleCorridor, GoesAShorterWayInsideTheTolerance) {
   for (const JointSpan& span : handed.out) {
     if (!span.is_free_driven) continue;
     reported = std::max(reported, span.axis_deviation_rad);
-    EXPECT_EQ(span.reason, EaseReason::kThrough);
+    EXPECT_EQ(span.reason, RelaxedReason::kThrough);
     EXPECT_GT(span.band.u0, 60 - 40);
     EXPECT_LT(span.band.u0, 60 + 40);
   }

@@ -8,11 +8,11 @@ namespace meridian {
 
 /// Why the tool axis was moved off the programmed one beside the pole, or beside the wrist
 /// singularity of a robot. Over its base axis alone the axis stays.
-enum class EaseReason : std::uint8_t {
+enum class RelaxedReason : std::uint8_t {
   kThrough,  ///< straight through the pole, out on the other branch: the redundant joint hardly
              ///< turns
   kBeside,   ///< past it on the same branch, the redundant joint on a shorter way
-  kOnPole,   ///< nearer than kPoleEase_rad: counts as on the pole, where no azimuth is defined
+  kOnPole,   ///< nearer than kPoleDeviation_rad: counts as on the pole, where no azimuth is defined
   kThroughWrist,  ///< of a 6R robot: out with the bend turned over, the roll hardly turns
   kPastWrist,     ///< with the bend as it was
   kThroughBoth,   ///< the same where the wrist point is over the base axis as well
@@ -20,30 +20,30 @@ enum class EaseReason : std::uint8_t {
 };
 
 /// A stretch of path on which the axis was moved beside a singularity, by blocks.
-struct PoleEase {
+struct RelaxedAxis {
   std::uint64_t first_sequence = 0, last_sequence = 0;
   std::uint32_t first_line = 0, last_line = 0;
   double deviation_rad = 0;  ///< largest, from the programmed axis, smoothing included
-  EaseReason reason = EaseReason::kOnPole;
+  RelaxedReason reason = RelaxedReason::kOnPole;
 };
-static_assert(std::is_trivially_copyable_v<PoleEase>);
+static_assert(std::is_trivially_copyable_v<RelaxedAxis>);
 
-/// In words, after "axis eased by ...: ".
-[[nodiscard]] constexpr const char* name_of(EaseReason reason) noexcept {
+/// In words, after "axis relaxed by ...: ".
+[[nodiscard]] constexpr const char* name_of(RelaxedReason reason) noexcept {
   switch (reason) {
-    case EaseReason::kThrough:
+    case RelaxedReason::kThrough:
       return "through the pole";
-    case EaseReason::kBeside:
+    case RelaxedReason::kBeside:
       return "past the pole";
-    case EaseReason::kOnPole:
+    case RelaxedReason::kOnPole:
       return "on the pole";
-    case EaseReason::kThroughWrist:
+    case RelaxedReason::kThroughWrist:
       return "through the wrist singularity";
-    case EaseReason::kPastWrist:
+    case RelaxedReason::kPastWrist:
       return "past the wrist singularity";
-    case EaseReason::kThroughBoth:
+    case RelaxedReason::kThroughBoth:
       return "through the wrist and shoulder singularities";
-    case EaseReason::kPastBoth:
+    case RelaxedReason::kPastBoth:
       return "past the wrist and shoulder singularities";
   }
   return "";
