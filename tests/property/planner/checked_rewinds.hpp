@@ -119,7 +119,7 @@ inline void check(const MachineModel& model, const SmoothTrace& trace,
       << "code " << static_cast<int>(trace.last.reject.code) << " joint " << trace.last.reject.joint
       << " block " << trace.last.reject.sequence << " at " << trace.last.reject.value;
   ASSERT_EQ(trace.times.back().kind, TimeKind::kEnd);
-  const auto ways = programmed_paths(blocks);
+  const auto programmed = programmed_paths(blocks);
   const auto setpoints = sample(model, trace, 1e-3, 0.37, start);
   const LimitUse use = measure_limits(model, setpoints, 1e-3);
   EXPECT_LE(std::max({use.v, use.a, use.j}), kLimit) << use.where;
@@ -131,8 +131,8 @@ inline void check(const MachineModel& model, const SmoothTrace& trace,
     if (n % 11 != 0 || trace.times[k].kind != TimeKind::kMove) continue;
     if (path.motion == MotionKind::kApproach || path.motion == MotionKind::kRewind) continue;
     const ToolPose pose = forward(model, path.tool_length_mm, setpoints[n].q);
-    const double off = distance_from(ways, trace.times[k].sequence, pose, model.tolerances.tip_mm,
-                                     model.tolerances.axis_rad);
+    const double off = distance_from(programmed, trace.times[k].sequence, pose,
+                                     model.tolerances.tip_mm, model.tolerances.axis_rad);
     ASSERT_LE(off, kLimit) << "setpoint " << n << " block " << trace.times[k].sequence;
     found.off = std::max(found.off, off);
   }

@@ -87,10 +87,10 @@ std::vector<ClBlock> with_a_slow_block(const MachineModel& model, int slow, doub
   const ClBlock begin = RandomPrograms(1).program(model, 1).front();
   const ToolPose at{to_vector(begin.tip_mm), to_vector(begin.axis)};
   std::vector<ClBlock> blocks = {cut_block(0, at)};
-  double way_mm = 0;
+  double distance_mm = 0;
   for (int n = 1; n <= 3; ++n) {
-    way_mm += n == slow ? 0.002 : length_mm;
-    blocks.push_back(cut_block(n, {at.tip + way_mm * Vector3::UnitX(), at.axis}));
+    distance_mm += n == slow ? 0.002 : length_mm;
+    blocks.push_back(cut_block(n, {at.tip + distance_mm * Vector3::UnitX(), at.axis}));
     if (n != slow) continue;
     blocks.back().feed_meaning = FeedMeaning::kInverseTime;
     blocks.back().feed = 0.1;

@@ -21,8 +21,8 @@ inline constexpr double kLongestCreep_s = 10;
   const JointVector begin = joints_at(model, path, from, path.joints_begin).q;
   const JointVector end = joints_at(model, path, to, begin).q;
   for (int i = 0; i < model.joint_count; ++i) {
-    const double way = kSlow * model.joints[i].limits.velocity * time.duration;
-    if (std::abs(end[i] - begin[i]) > way) return false;
+    const double max_distance = kSlow * model.joints[i].limits.velocity * time.duration;
+    if (std::abs(end[i] - begin[i]) > max_distance) return false;
   }
   return true;
 }

@@ -257,8 +257,8 @@ inline FeedPeaks check(const FeedPath& path, const FeedSetpoints& setpoints, dou
   const LimitUse use = measure_limits(path.model, setpoints.joints, cycle_s);
   FeedPeaks peaks{use.v, use.a, use.j, 0, use.where};
   for (std::size_t n = 1; n < setpoints.tip.size(); ++n) {
-    const double way = (setpoints.tip[n] - setpoints.tip[n - 1]).norm() - 1e-12;
-    peaks.feed = std::max(peaks.feed, way / cycle_s / setpoints.feed[n]);
+    const double moved = (setpoints.tip[n] - setpoints.tip[n - 1]).norm() - 1e-12;
+    peaks.feed = std::max(peaks.feed, moved / cycle_s / setpoints.feed[n]);
   }
   return peaks;
 }

@@ -17,7 +17,7 @@ namespace meridian::test::inverse_time {
 namespace {
 
 constexpr double kReach_mm = 5;
-constexpr double kPlace_mm = 0.02;  // between u of the path and the sum of block lengths
+constexpr double kPosition_mm = 0.02;  // between u of the path and the sum of block lengths
 constexpr double kCycle_s = 1e-3;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
@@ -83,7 +83,8 @@ class MixedTimes {
   void add(const Vector3& by, double turn) {
     const double side = uniform(0, 1) < 0.5 ? -1 : 1;
     const double tilt = std::clamp(tilt_ + side * turn, 0.1, 0.9);
-    const double way = std::hypot(by.norm(), kAxisLength_mm_per_rad * std::abs(tilt - tilt_));
+    const double block_length =
+        std::hypot(by.norm(), kAxisLength_mm_per_rad * std::abs(tilt - tilt_));
     tip_ += by;
     tilt_ = tilt;
     ClBlock block;
@@ -92,7 +93,7 @@ class MixedTimes {
     const double speed = log_uniform(1, 200);
     const bool is_timed = by.norm() == 0 || uniform(0, 1) < 0.9;
     block.feed_meaning = is_timed ? FeedMeaning::kInverseTime : FeedMeaning::kTip;
-    block.feed = is_timed && way > 0 ? speed / way : speed;
+    block.feed = is_timed && block_length > 0 ? speed / block_length : speed;
     put(block);
   }
 
@@ -111,19 +112,20 @@ struct Asked {
 };
 
 std::vector<Asked> asked_by(const std::vector<ClBlock>& blocks, const MachineModel& model) {
-  const auto ways = programmed_paths(blocks);
+  const auto programmed = programmed_paths(blocks);
   std::vector<Asked> out;
   double u = 0;
   for (std::size_t n = 1; n < blocks.size(); ++n) {
-    const double way = ways[n].length, tip = tip_length(ways[n]), turn = ways[n].axis_turn;
-    if (!is_motion(blocks[n].kind) || !(way > 0)) continue;
+    const double block_length = programmed[n].length, tip = tip_length(programmed[n]),
+                 turn = programmed[n].axis_turn;
+    if (!is_motion(blocks[n].kind) || !(block_length > 0)) continue;
     const bool is_timed = blocks[n].feed_meaning == FeedMeaning::kInverseTime;
     const double time = is_timed ? 1 / blocks[n].feed : tip / blocks[n].feed;
-    const double min_tip = is_timed ? way * model.tolerances.tip_mm / kReach_mm : 0;
-    const double min_turn = way * model.tolerances.axis_rad / kReach_mm;
-    out.push_back({u, u + way, is_timed, std::max(tip, min_tip) / time,
+    const double min_tip = is_timed ? block_length * model.tolerances.tip_mm / kReach_mm : 0;
+    const double min_turn = block_length * model.tolerances.axis_rad / kReach_mm;
+    out.push_back({u, u + block_length, is_timed, std::max(tip, min_tip) / time,
                    std::max(turn, min_turn) / time, is_timed ? time : 0});
-    u += way;
+    u += block_length;
   }
   return out;
 }
@@ -136,13 +138,13 @@ Asked fastest_about(const std::vector<Asked>& asked, double u0, double u1) {
     for (const Asked& block : asked) {
       if (block.end < u0 - reach || block.begin > u1 + reach) continue;
       out.is_timed |= block.is_timed;
-      has_tip_feed |= reach == kPlace_mm && !block.is_timed;
+      has_tip_feed |= reach == kPosition_mm && !block.is_timed;
       out.tip_mm_per_s = std::max(out.tip_mm_per_s, block.tip_mm_per_s);
       out.turn_rad_per_s = std::max(out.turn_rad_per_s, block.turn_rad_per_s);
     }
   };
-  add_all(kPlace_mm);
-  if (out.is_timed) add_all(kReach_mm + kPlace_mm);
+  add_all(kPosition_mm);
+  if (out.is_timed) add_all(kReach_mm + kPosition_mm);
   if (has_tip_feed) out.turn_rad_per_s = kNone;
   return out;
 }
@@ -172,7 +174,7 @@ Speeds measure(const MachineModel& model, const std::vector<ClBlock>& blocks) {
     out.duration_s += trace.times[n].duration;
   }
   const auto asked = asked_by(blocks, model);
-  EXPECT_NEAR(u, asked.back().end, kPlace_mm);
+  EXPECT_NEAR(u, asked.back().end, kPosition_mm);
   for (const Asked& block : asked) out.min_s += block.min_s;
   const auto setpoints = sample(model, trace, kCycle_s, 0.37, start);
   for (std::size_t n = 1; n < setpoints.size(); ++n) {

@@ -76,7 +76,7 @@ void check(const MachineModel& model, const Trace& trace, const std::vector<ClBl
     begins.push_back(time);
     time += piece.duration;
   }
-  const auto ways = programmed_paths(blocks);
+  const auto programmed = programmed_paths(blocks);
   for (std::size_t n = 0; n < begins.size(); ++n) {
     for (const double cycle : {1e-3, 250e-6}) {
       const bool at_joint = draw.chance(0.7);
@@ -92,7 +92,7 @@ void check(const MachineModel& model, const Trace& trace, const std::vector<ClBl
       const double feed = measure_feed(model, trace, setpoints, cycle);
       ASSERT_LE(feed, kLimit) << "time piece " << n;
       peaks.feed = std::max(peaks.feed, feed);
-      if (n % 8 == 0) peaks.take(measure_deviation(model, trace, setpoints, ways, 8));
+      if (n % 8 == 0) peaks.take(measure_deviation(model, trace, setpoints, programmed, 8));
     }
   }
   ASSERT_LE(peaks.tip_mm, 1e-3);

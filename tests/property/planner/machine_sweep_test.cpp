@@ -93,7 +93,7 @@ bool is_along_program(const PathPiece& path) {
 /// Distances between the way of the tool and the program's, either way, in tolerances.
 void check_path(const MachineModel& model, const std::vector<ClBlock>& blocks,
                 const SmoothTrace& trace, const std::vector<PlanSample>& setpoints, Sweep& sweep) {
-  const auto ways = programmed_paths(blocks);
+  const auto programmed = programmed_paths(blocks);
   const double tip_mm = model.tolerances.tip_mm, axis_rad = model.tolerances.axis_beside_pole_rad();
   PassedVertices vertices(blocks, tip_mm, axis_rad);
   double off = 0;
@@ -105,7 +105,8 @@ void check_path(const MachineModel& model, const std::vector<ClBlock>& blocks,
     vertices.add(trace.times[k].sequence, pose, n == before + 1);
     before = n;
     if (n % 7 != 0) continue;
-    off = std::max(off, distance_from(ways, trace.times[k].sequence, pose, tip_mm, axis_rad, off));
+    off = std::max(off,
+                   distance_from(programmed, trace.times[k].sequence, pose, tip_mm, axis_rad, off));
   }
   const double missed = vertices.worst(trace.last.status == PlanStatus::kOk);
   EXPECT_LE(off, kLimit);

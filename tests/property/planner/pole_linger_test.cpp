@@ -29,17 +29,17 @@ std::vector<Case> cases(std::vector<Case> all) {
 }
 
 /// Blocks of one length straight along x at 100 mm/s.
-class Way {
+class ProgramPath {
  public:
-  explicit Way(double step_mm) : step_mm_(step_mm) {}
+  explicit ProgramPath(double step_mm) : step_mm_(step_mm) {}
 
-  Way& step(double step_mm) {
+  ProgramPath& step(double step_mm) {
     step_mm_ = step_mm;
     return *this;
   }
 
   /// To an axis of which x and y are given, about `centre`.
-  Way& to(double x, double y, const Vector3& centre = Vector3::UnitZ()) {
+  ProgramPath& to(double x, double y, const Vector3& centre = Vector3::UnitZ()) {
     const Vector3 right = Vector3::UnitY().cross(centre).normalized();
     ClBlock block;
     block.sequence = blocks_.size();
@@ -51,7 +51,7 @@ class Way {
     blocks_.push_back(block);
     return *this;
   }
-  Way& lean(double azimuth_deg, double tilt_deg) {
+  ProgramPath& lean(double azimuth_deg, double tilt_deg) {
     const double azimuth = units::rad_from_deg(azimuth_deg);
     const double size = std::tan(units::rad_from_deg(tilt_deg));
     return to(size * std::cos(azimuth), size * std::sin(azimuth));
@@ -68,15 +68,16 @@ class Way {
 };
 
 /// `count` blocks whose axis wavers within `max_deg` of `centre`.
-Way waver(Way way, int count, double max_deg, const Vector3& centre = Vector3::UnitZ()) {
+ProgramPath waver(ProgramPath path, int count, double max_deg,
+                  const Vector3& centre = Vector3::UnitZ()) {
   std::mt19937 engine(7);
   std::uniform_real_distribution<double> share(-1, 1);
   const double most = units::rad_from_deg(max_deg) / std::sqrt(2.0);
   for (int n = 0; n < count; ++n) {
     const double x = most * share(engine);
-    way.to(x, most * share(engine), centre);
+    path.to(x, most * share(engine), centre);
   }
-  return way;
+  return path;
 }
 
 /// Plans `blocks`, checks limits, tolerance and that all of them are cut.
@@ -88,7 +89,7 @@ SmoothTrace cut(const MachineModel& model, const std::vector<ClBlock>& blocks) {
       << trace.last.reject.sequence << " by " << trace.last.reject.value;
   if (trace.last.status != PlanStatus::kOk) return trace;
   EXPECT_EQ(trace.times.back().kind, TimeKind::kEnd);
-  const auto ways = programmed_paths(blocks);
+  const auto programmed = programmed_paths(blocks);
   for (const double cycle : {1e-3, 250e-6}) {
     const auto setpoints = sample(model, trace, cycle, 0.37, start);
     const LimitUse use = measure_limits(model, setpoints, cycle);
@@ -100,8 +101,8 @@ SmoothTrace cut(const MachineModel& model, const std::vector<ClBlock>& blocks) {
           trace.times[k].kind == TimeKind::kMove && trace.paths[k].motion != MotionKind::kApproach;
       if (!is_cut || cycle < 1e-3) continue;
       const ToolPose pose = forward(model, trace.paths[k].tool_length_mm, setpoints[n].q);
-      const double off = distance_from(ways, trace.times[k].sequence, pose, model.tolerances.tip_mm,
-                                       model.tolerances.axis_rad);
+      const double off = distance_from(programmed, trace.times[k].sequence, pose,
+                                       model.tolerances.tip_mm, model.tolerances.axis_rad);
       EXPECT_LE(off, kLimit) << "setpoint " << n << " block " << trace.times[k].sequence;
     }
   }
@@ -114,8 +115,10 @@ TEST(PoleLinger, AWaveringAxisTakesTheTimeThatItTakesAwayFromThePole) {
   for (const MachineModel& model : cases<MachineModel>({bench_machine(), lai_machine()})) {
     for (const double max_deg : cases<double>({0.006, 0.02})) {
       SCOPED_TRACE(testing::Message() << model.name << ", wavers by " << max_deg << " deg");
-      const double here_s = cut(model, waver(Way(1), blocks, max_deg).program()).duration_s();
-      const double away_s = cut(model, waver(Way(1), blocks, max_deg, away).program()).duration_s();
+      const double here_s =
+          cut(model, waver(ProgramPath(1), blocks, max_deg).program()).duration_s();
+      const double away_s =
+          cut(model, waver(ProgramPath(1), blocks, max_deg, away).program()).duration_s();
       std::printf("%s, %d blocks wavering by %.3f deg: %.3f s, away from the pole %.3f s\n",
                   model.name.c_str(), blocks, max_deg, here_s, away_s);
       EXPECT_LT(here_s, 1.05 * away_s);
@@ -125,12 +128,12 @@ TEST(PoleLinger, AWaveringAxisTakesTheTimeThatItTakesAwayFromThePole) {
 
 /// Past the pole at `off_deg`, in steps of `step_mm`, 0.5 deg of axis per mm.
 std::vector<ClBlock> pass_in_steps(double step_mm, double off_deg) {
-  Way way(step_mm);
+  ProgramPath path(step_mm);
   const double off = units::rad_from_deg(off_deg);
   const int steps = static_cast<int>(std::lround(30 / step_mm));
   for (int n = -steps; n <= steps; ++n)
-    way.to(std::tan(units::rad_from_deg(0.5 * n * step_mm)), off);
-  return way.program();
+    path.to(std::tan(units::rad_from_deg(0.5 * n * step_mm)), off);
+  return path.program();
 }
 
 TEST(PoleLinger, ShortBlocksPassThePoleAsFastAsLongOnes) {
@@ -151,17 +154,17 @@ std::vector<ClBlock> stay(double in_deg, int count, double out_deg) {
     const double size = std::tan(units::rad_from_deg(tilt_deg));
     return std::pair(size * std::cos(azimuth), size * std::sin(azimuth));
   };
-  Way way(1);
+  ProgramPath path(1);
   for (int n = 12; n >= 1; --n) {
     const auto [x, y] = at(in_deg, n);
-    way.to(x, y);
+    path.to(x, y);
   }
-  way = waver(way, count, 0.01);
+  path = waver(path, count, 0.01);
   for (int n = 1; n <= 12; ++n) {
     const auto [x, y] = at(out_deg, n);
-    way.to(x, y);
+    path.to(x, y);
   }
-  return way.program();
+  return path.program();
 }
 
 TEST(PoleLinger, AWayOntoThePoleAndOffAgainRunsThroughHoweverLongItStays) {
@@ -191,14 +194,14 @@ struct Excursion {
 
 /// Onto the pole, a stay that wavers by 0.012 deg with an excursion, off on the other side.
 std::vector<ClBlock> stay_with(const Excursion& out) {
-  Way way(1);
-  for (int n = 12; n >= 0; --n) way.lean(0, n);
-  way = waver(way, out.behind, 0.012);
-  way.lean(out.azimuth_deg, out.off_deg);
-  if (out.behind == 80) way.lean(0, 0);
-  way = waver(way, 80 - out.behind, 0.012);
-  for (int n = 1; n <= 12; ++n) way.lean(180, n);
-  return way.program();
+  ProgramPath path(1);
+  for (int n = 12; n >= 0; --n) path.lean(0, n);
+  path = waver(path, out.behind, 0.012);
+  path.lean(out.azimuth_deg, out.off_deg);
+  if (out.behind == 80) path.lean(0, 0);
+  path = waver(path, 80 - out.behind, 0.012);
+  for (int n = 1; n <= 12; ++n) path.lean(180, n);
+  return path.program();
 }
 
 TEST(PoleLinger, ABlockOffThePoleAndBackCostsAStayNoTurn) {
@@ -219,21 +222,21 @@ TEST(PoleLinger, ABlockOffThePoleAndBackCostsAStayNoTurn) {
 }
 
 TEST(PoleLinger, AnAxisThatWaversAsFarAsItsToleranceIsHeldAsWell) {
-  Way way(1);
-  for (int n = 12; n >= 0; --n) way.lean(0, n);
-  way = waver(way, kIsTimed ? 100 : 60, 0.08);
-  for (int n = 0; n <= 12; ++n) way.lean(180, n);
-  const double time_s = cut(bench_machine(), way.program()).duration_s();
+  ProgramPath path(1);
+  for (int n = 12; n >= 0; --n) path.lean(0, n);
+  path = waver(path, kIsTimed ? 100 : 60, 0.08);
+  for (int n = 0; n <= 12; ++n) path.lean(180, n);
+  const double time_s = cut(bench_machine(), path.program()).duration_s();
   std::printf("wavers by 0.08 deg under 0.1 deg: %.3f s\n", time_s);
   EXPECT_LT(time_s, 2.5);
 }
 
 TEST(PoleLinger, EndsOnThePoleInsideTheLimitsBehindABlockOffIt) {
-  Way way(1);
-  for (int n = 12; n >= 0; --n) way.lean(0, n);
-  way = waver(way, kIsTimed ? 80 : 45, 0.012);
-  way.lean(45, 0.12).lean(0, 0);
-  cut(bench_machine(), way.program());
+  ProgramPath path(1);
+  for (int n = 12; n >= 0; --n) path.lean(0, n);
+  path = waver(path, kIsTimed ? 80 : 45, 0.012);
+  path.lean(45, 0.12).lean(0, 0);
+  cut(bench_machine(), path.program());
 }
 
 /// Seeded: stretches that waver about the pole, as far as three tolerances, that stay on it, and
@@ -243,11 +246,11 @@ std::vector<ClBlock> linger(std::uint32_t seed) {
   const auto uniform = [&engine](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(engine);
   };
-  Way way(1);
+  ProgramPath path(1);
   double azimuth = uniform(-3, 3);
   const auto lean = [&](double tilt_deg, double by_mm) {
     const double size = std::tan(units::rad_from_deg(tilt_deg));
-    way.step(by_mm).to(size * std::cos(azimuth), size * std::sin(azimuth));
+    path.step(by_mm).to(size * std::cos(azimuth), size * std::sin(azimuth));
   };
   lean(uniform(0, 1) < 0.3 ? 0.01 : 5, 1);
   for (int section = 0; section < 8; ++section) {
@@ -266,7 +269,7 @@ std::vector<ClBlock> linger(std::uint32_t seed) {
     for (int n = 1; n <= there; ++n) lean(farthest * n / there, std::max(step, 0.2));
     if (uniform(0, 1) < 0.5) azimuth += uniform(-0.5, 0.5);
   }
-  return way.program();
+  return path.program();
 }
 
 TEST(PoleLinger, KeepsLimitsAndTolerancesHoweverAProgramLingers) {
@@ -288,7 +291,7 @@ TEST(PoleLinger, WhereNoWayLeadsOffTheFirstBlockThatCannotGoOnIsRefusedByName) {
   MachineModel model = lai_machine();
   model.joints[3].limits.travel_max = units::rad_from_deg(60);
   model.joints[3].limits.travel_min = -model.joints[3].limits.travel_max;
-  Way from_rest = waver(Way(1), 30, 0.006);
+  ProgramPath from_rest = waver(ProgramPath(1), 30, 0.006);
   for (int n = 1; n <= 12; ++n) from_rest.to(0, std::tan(units::rad_from_deg(n)));
   for (const bool is_from_rest : {true, false}) {
     SCOPED_TRACE(is_from_rest ? "begun on the pole" : "come to it");

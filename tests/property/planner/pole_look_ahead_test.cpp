@@ -68,19 +68,19 @@ TEST(PoleLookAhead, TakesTheBranchOnWhichTheTiltHasTravelFarBehindThePole) {
     double offset_deg, side;
     int before;  // blocks: none, and more than the look at the program's begin goes over
     Transition transition;
-  } ways[] = {{0, -1, 0, Transition::kSmooth},
-              {0, 1, 0, Transition::kSmooth},
-              {0.05, -1, 0, Transition::kSmooth},
-              {0.05, 1, 2500, Transition::kSmooth},
-              {0, 1, 2500, Transition::kExactStop}};
-  for (const auto& way : ways) {
-    if (!kIsTimed && way.before == 0) continue;  // the longest say the most
-    SCOPED_TRACE(testing::Message() << way.before << " blocks before, " << way.offset_deg
-                                    << " deg beside it, tilt on side " << way.side);
-    const auto blocks = gently_over_the_pole(way.offset_deg, way.before);
-    const OneSided machine(blocks, way.side);
+  } cases[] = {{0, -1, 0, Transition::kSmooth},
+               {0, 1, 0, Transition::kSmooth},
+               {0.05, -1, 0, Transition::kSmooth},
+               {0.05, 1, 2500, Transition::kSmooth},
+               {0, 1, 2500, Transition::kExactStop}};
+  for (const auto& entry : cases) {
+    if (!kIsTimed && entry.before == 0) continue;  // the longest say the most
+    SCOPED_TRACE(testing::Message() << entry.before << " blocks before, " << entry.offset_deg
+                                    << " deg beside it, tilt on side " << entry.side);
+    const auto blocks = gently_over_the_pole(entry.offset_deg, entry.before);
+    const OneSided machine(blocks, entry.side);
     const SmoothTrace trace =
-        plan_smooth(machine.model, blocks, machine.start, {way.transition, 0, 0}, true);
+        plan_smooth(machine.model, blocks, machine.start, {entry.transition, 0, 0}, true);
     expect_whole(machine.model, trace, machine.start);
     EXPECT_EQ(trace.tails, 0);
   }

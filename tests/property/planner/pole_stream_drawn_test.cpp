@@ -70,16 +70,16 @@ Drawn draw(int seed) {
       go_to({real(-size, size) * tolerance, real(-size, size) * tolerance, 0}, whole(1, 20),
             real(0.1, 1.5));
     }
-    const double way = real(-3.2, 3.2), by = units::rad_from_deg(real(2, 9));
-    go_to({by * std::cos(way), by * std::sin(way), 0}, whole(20, 80), 1);
+    const double azimuth = real(-3.2, 3.2), by = units::rad_from_deg(real(2, 9));
+    go_to({by * std::cos(azimuth), by * std::sin(azimuth), 0}, whole(20, 80), 1);
     if (whole(0, 1) == 0) {  // round it
       const double turn = real(-5, 5);
       const int count = 2 + static_cast<int>(std::abs(turn) * 20);
       for (int n = 1; n <= count; ++n) {
-        const double angle = way + turn * n / count;
+        const double angle = azimuth + turn * n / count;
         put({by * std::cos(angle), by * std::sin(angle), 0}, 1);
       }
-      lean = {by * std::cos(way + turn), by * std::sin(way + turn), 0};
+      lean = {by * std::cos(azimuth + turn), by * std::sin(azimuth + turn), 0};
     }
   }
   go_to(lean * (units::rad_from_deg(12) / lean.norm()), 60, 1);

@@ -138,7 +138,7 @@ class LeastTime {
   }
 
  private:
-  struct Place {
+  struct Sample {
     double t = 0, azimuth = 0, half = 0;
     bool is_wall = false;
   };
@@ -150,12 +150,12 @@ class LeastTime {
   void add(double dt, const Lean& at) {
     const double rho = std::hypot(at.x, at.y), phi = std::atan2(at.y, at.x);
     const double before = phi_.empty() ? phi : phi_.back().azimuth;
-    Place place;
-    place.t = phi_.empty() ? 0 : phi_.back().t + dt;
-    place.azimuth = before + std::remainder(phi - before, 2 * std::numbers::pi);
-    place.is_wall = rho > kTolerance_rad;
-    place.half = place.is_wall ? std::asin(kTolerance_rad / rho) : 0;
-    phi_.push_back(place);
+    Sample node;
+    node.t = phi_.empty() ? 0 : phi_.back().t + dt;
+    node.azimuth = before + std::remainder(phi - before, 2 * std::numbers::pi);
+    node.is_wall = rho > kTolerance_rad;
+    node.half = node.is_wall ? std::asin(kTolerance_rad / rho) : 0;
+    phi_.push_back(node);
   }
 
   [[nodiscard]] double time_of(const std::vector<int>& sides,
@@ -166,12 +166,12 @@ class LeastTime {
     std::size_t wall = 0;
     for (std::size_t n = 0; n < end; ++n) {
       while (wall + 1 < begins.size() && begins[wall + 1] <= n) ++wall;
-      const Place& place = phi_[n];
+      const Sample& node = phi_[n];
       const double middle =
-          place.azimuth + std::numbers::pi * sides[std::min(wall, sides.size() - 1)];
-      windows_.push_back(place.is_wall && wall < sides.size()
-                             ? StringWindow{place.t, middle - place.half, middle + place.half}
-                             : StringWindow{place.t, -kAny, kAny});
+          node.azimuth + std::numbers::pi * sides[std::min(wall, sides.size() - 1)];
+      windows_.push_back(node.is_wall && wall < sides.size()
+                             ? StringWindow{node.t, middle - node.half, middle + node.half}
+                             : StringWindow{node.t, -kAny, kAny});
     }
     pull_taut(windows_, phi_.front().azimuth, values_);
     double time = 0;
@@ -183,7 +183,7 @@ class LeastTime {
   }
 
   double speed_;
-  std::vector<Place> phi_;
+  std::vector<Sample> phi_;
   std::vector<StringWindow> windows_;
   std::vector<double> values_;
 };
@@ -198,12 +198,12 @@ void check(const MachineModel& model, const std::vector<ClBlock>& blocks,
   const auto setpoints = sample(model, trace, 1e-3, 0.37, joints_of(model, blocks[0]));
   const LimitUse use = measure_limits(model, setpoints, 1e-3);
   EXPECT_LE(std::max({use.v, use.a, use.j}), 1 + 1e-6) << use.where;
-  const auto ways = programmed_paths(blocks);
+  const auto programmed = programmed_paths(blocks);
   for (std::size_t n = 3; n + 3 < setpoints.size(); n += 17) {
     const auto k = static_cast<std::size_t>(setpoints[n].piece);
     if (trace.times[k].kind != TimeKind::kMove) continue;
     const ToolPose pose = forward(model, trace.paths[k].tool_length_mm, setpoints[n].q);
-    EXPECT_LE(distance_from(ways, trace.times[k].sequence, pose, model.tolerances.tip_mm,
+    EXPECT_LE(distance_from(programmed, trace.times[k].sequence, pose, model.tolerances.tip_mm,
                             model.tolerances.axis_rad),
               1 + 1e-6)
         << "block " << trace.times[k].sequence;

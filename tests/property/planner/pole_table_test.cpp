@@ -63,7 +63,7 @@ Pass pass(const MachineModel& model, double distance_deg) {
   for (const RelaxedAxis& relaxed_axis : trace.relaxed_axes) {
     out.reported_deg = std::max(out.reported_deg, units::deg_from_rad(relaxed_axis.deviation_rad));
   }
-  const auto ways = programmed_paths(blocks);
+  const auto programmed = programmed_paths(blocks);
   const int free = redundant_joint(model);
   for (std::size_t n = 1; n < setpoints.size(); ++n) {
     const auto k = static_cast<std::size_t>(setpoints[n].piece);
@@ -72,7 +72,7 @@ Pass pass(const MachineModel& model, double distance_deg) {
     out.peak_deg_per_s = std::max(out.peak_deg_per_s, units::deg_from_rad(rate));
     if (n % 5 != 0) continue;
     const ToolPose pose = forward(model, trace.paths[k].tool_length_mm, setpoints[n].q);
-    const double off = distance_from(ways, trace.times[k].sequence, pose, 1e9, 1);
+    const double off = distance_from(programmed, trace.times[k].sequence, pose, 1e9, 1);
     out.off_deg = std::max(out.off_deg, units::deg_from_rad(off));
   }
   return out;

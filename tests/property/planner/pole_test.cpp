@@ -42,13 +42,13 @@ void expect_clean(const MachineModel& model, const Trace& trace, const std::vect
                   const JointVector& start) {
   ASSERT_EQ(trace.last.status, PlanStatus::kOk)
       << static_cast<int>(trace.last.reject.code) << " " << trace.last.reject.value;
-  const auto ways = programmed_paths(blocks);
+  const auto programmed = programmed_paths(blocks);
   for (const double cycle : {1e-3, 250e-6}) {
     const auto setpoints = sample(model, trace, cycle, 0.37, start);
     const LimitUse use = measure_limits(model, setpoints, cycle);
     EXPECT_LE(std::max({use.v, use.a, use.j}), kLimit) << use.where << " cycle " << cycle;
     EXPECT_LE(measure_feed(model, trace, setpoints, cycle), kLimit);
-    const Deviation off = measure_deviation(model, trace, setpoints, ways, 97);
+    const Deviation off = measure_deviation(model, trace, setpoints, programmed, 97);
     EXPECT_LE(off.tip_mm, 1e-3);
     EXPECT_LE(units::deg_from_rad(off.axis_rad), 1e-3);
   }

@@ -26,12 +26,12 @@ class RobotStarts : public testing::Test {
     constexpr int kBlocks = 20;
     constexpr double kBeside_mm = 5, kSweep_mm = 60, kHeight_mm = 1000;
     const double d = robot_.robot.wrist_mm + robot_.tool_length_mm, c = std::sqrt(0.5);
-    const Vector3 way(c, c, 0), beside(-c, c, 0), up(0, 0, 1);
+    const Vector3 forward(c, c, 0), beside(-c, c, 0), up(0, 0, 1);
     std::vector<ClBlock> blocks;
     for (int n = 0; n <= kBlocks; ++n) {
       const double along = kSweep_mm * (1 - 2.0 * n / kBlocks);
-      const Vector3 wrist =
-          along * way + kBeside_mm * beside + (robot_.robot.shoulder_height_mm + kHeight_mm) * up;
+      const Vector3 wrist = along * forward + kBeside_mm * beside +
+                            (robot_.robot.shoulder_height_mm + kHeight_mm) * up;
       blocks.push_back(cut_block(n, {Vector3(wrist - d * up), up}));
     }
     end_program(blocks);

@@ -111,13 +111,13 @@ class ShoulderPass : public SingularPass {
   ShoulderPass(const MachineModel& robot, std::uint32_t seed) : SingularPass(robot, seed) {
     const double azimuth = between(-1.4, 1.4), height_mm = between(820, 1250);
     wrist_ = {0, 0, robot.robot.shoulder_height_mm + height_mm};
-    way_ = {std::cos(azimuth), std::sin(azimuth), 0};
+    direction_ = {std::cos(azimuth), std::sin(azimuth), 0};
     const bool leans = robot.robot.has_spherical_wrist;
     const double lean = leans ? between(0.9, 1.3) : between(-0.3, 0.3);
-    const Vector3 beside(-way_.y(), way_.x(), 0);
-    axis_ =
-        (std::cos(lean) * Vector3::UnitZ() - std::sin(lean) * way_ + between(-0.2, 0.2) * beside)
-            .normalized();
+    const Vector3 beside(-direction_.y(), direction_.x(), 0);
+    axis_ = (std::cos(lean) * Vector3::UnitZ() - std::sin(lean) * direction_ +
+             between(-0.2, 0.2) * beside)
+                .normalized();
     turn_ = Vector3(between(-0.1, 0.1), between(-0.1, 0.1), 0);
     rise_mm_ = between(-20, 20);
   }
@@ -129,15 +129,15 @@ class ShoulderPass : public SingularPass {
     return {wrist - (robot_.robot.wrist_mm + robot_.tool_length_mm) * axis, axis};
   }
   [[nodiscard]] ToolPose across(double share, double beside_mm) const override {
-    const Vector3 beside(-way_.y(), way_.x(), 0);
-    return at(share, wrist_ + share * (kSweep_mm * way_ + rise_mm_ * Vector3::UnitZ()) +
+    const Vector3 beside(-direction_.y(), direction_.x(), 0);
+    return at(share, wrist_ + share * (kSweep_mm * direction_ + rise_mm_ * Vector3::UnitZ()) +
                          beside_mm * beside);
   }
   [[nodiscard]] ToolPose along(double share, double beside_mm) const override {
-    return at(share, wrist_ + beside_mm * way_ + share * kSweep_mm * Vector3::UnitZ());
+    return at(share, wrist_ + beside_mm * direction_ + share * kSweep_mm * Vector3::UnitZ());
   }
 
-  Vector3 wrist_, way_, axis_, turn_;
+  Vector3 wrist_, direction_, axis_, turn_;
   double rise_mm_ = 0;
 };
 
@@ -152,7 +152,7 @@ class BothPass : public SingularPass {
     pose_ = forward(robot, robot.tool_length_mm, arm(half_elbow_, 0, 0, 0));
     wrist_ = pose_.tip + pivot_mm() * pose_.axis;
     // From the front: from behind the arm would stand turned by 180°, its wrist far from singular.
-    way_ = {-std::cos(at_[robot::kYaw]), -std::sin(at_[robot::kYaw]), 0};
+    direction_ = {-std::cos(at_[robot::kYaw]), -std::sin(at_[robot::kYaw]), 0};
     const Vector3 any{between(-1, 1), between(-1, 1), between(-1, 1)};
     spin_ = any.cross(pose_.axis).normalized();
     rise_mm_ = between(-20, 20);
@@ -180,8 +180,9 @@ class BothPass : public SingularPass {
     const Vector3 on = std::cos(turn) * pose_.axis + std::sin(turn) * spin_.cross(pose_.axis);
     const double beside_rad = beside * robot_.tolerances.axis_rad;
     const Vector3 axis = (on + std::tan(beside_rad) * spin_).normalized();
-    const Vector3 wrist = wrist_ + share * (kSweep_mm * way_ + rise_mm_ * Vector3::UnitZ()) +
-                          beside * robot_.tolerances.tip_mm * Vector3(-way_.y(), way_.x(), 0);
+    const Vector3 wrist =
+        wrist_ + share * (kSweep_mm * direction_ + rise_mm_ * Vector3::UnitZ()) +
+        beside * robot_.tolerances.tip_mm * Vector3(-direction_.y(), direction_.x(), 0);
     return {wrist - pivot_mm() * axis, axis};
   }
   [[nodiscard]] ToolPose along(double share, double beside) const override {
@@ -192,7 +193,7 @@ class BothPass : public SingularPass {
 
   JointVector at_{}, along_{};
   ToolPose pose_{Vector3::Zero(), Vector3::UnitZ()};
-  Vector3 wrist_, way_, spin_;
+  Vector3 wrist_, direction_, spin_;
   double half_elbow_ = 0, rise_mm_ = 0, apart_ = 0;
 };
 

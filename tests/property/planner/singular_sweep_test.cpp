@@ -61,14 +61,14 @@ double cutting_time_s(const Trace& trace) {
 /// In tolerances.
 double farthest_off(const MachineModel& model, const std::vector<ClBlock>& blocks,
                     const Trace& trace, const std::vector<PlanSample>& setpoints) {
-  const auto ways = programmed_paths(blocks);
+  const auto programmed = programmed_paths(blocks);
   double farthest = 0;
   for (std::size_t n = 3; n + 3 < setpoints.size(); n += 7) {
     const auto piece = static_cast<std::size_t>(setpoints[n].piece);
     if (trace.paths[piece].motion == MotionKind::kApproach) continue;
     const ToolPose pose = forward(model, model.tool_length_mm, setpoints[n].q);
     farthest =
-        std::max(farthest, distance_from(ways, trace.times[piece].sequence, pose,
+        std::max(farthest, distance_from(programmed, trace.times[piece].sequence, pose,
                                          model.tolerances.tip_mm, model.tolerances.axis_rad, 1.0));
   }
   return farthest;

@@ -34,7 +34,7 @@ void check(const MachineModel& model, const SmoothTrace& trace, const std::vecto
       << "code " << static_cast<int>(trace.last.reject.code) << " joint " << trace.last.reject.joint
       << " block " << trace.last.reject.sequence;
   ASSERT_EQ(trace.times.back().kind, TimeKind::kEnd);
-  const auto ways = programmed_paths(blocks);
+  const auto programmed = programmed_paths(blocks);
   for (const double cycle : {1e-3, 250e-6}) {
     const auto setpoints = sample(model, trace, cycle, 0.37, start);
     const LimitUse use = measure_limits(model, setpoints, cycle);
@@ -51,8 +51,8 @@ void check(const MachineModel& model, const SmoothTrace& trace, const std::vecto
       if (trace.times[k].kind != TimeKind::kMove) continue;
       if (trace.paths[k].motion == MotionKind::kApproach) continue;
       const ToolPose pose = forward(model, trace.paths[k].tool_length_mm, setpoints[n].q);
-      const double off = distance_from(ways, trace.times[k].sequence, pose, model.tolerances.tip_mm,
-                                       model.tolerances.axis_rad);
+      const double off = distance_from(programmed, trace.times[k].sequence, pose,
+                                       model.tolerances.tip_mm, model.tolerances.axis_rad);
       ASSERT_LE(off, 1 + 1e-6) << "setpoint " << n << " block " << trace.times[k].sequence;
       peaks.off = std::max(peaks.off, off);
     }

@@ -122,13 +122,13 @@ inline JointVector joints_of(const MachineModel& model, const ClBlock& block) {
 
 /// Matched distance, in tolerances, of `pose` from the programmed ways about block `sequence`: the
 /// least over poses of the path of the larger of tip and axis.
-inline double distance_from(const std::vector<PathPiece>& ways, std::uint64_t sequence,
+inline double distance_from(const std::vector<PathPiece>& programmed, std::uint64_t sequence,
                             const ToolPose& pose, double tip_mm, double axis_rad,
                             double enough = 0) {
   constexpr double kBehind_mm = 0.3, kAhead_mm = 2.5;  // a span is named by where it begins
-  const auto min_on = [&](const PathPiece& way) {
+  const auto min_on = [&](const PathPiece& programmed_path) {
     const auto at = [&](double x) {
-      const ToolPose p = pose_at(way, x * way.length);
+      const ToolPose p = pose_at(programmed_path, x * programmed_path.length);
       return std::max((p.tip - pose.tip).norm() / tip_mm,
                       angle_between(p.axis, pose.axis) / axis_rad);
     };
@@ -139,17 +139,17 @@ inline double distance_from(const std::vector<PathPiece>& ways, std::uint64_t se
     }
     return std::min({at(0.5 * (low + high)), at(0.0), at(1.0)});
   };
-  double least = min_on(ways[sequence]);
+  double least = min_on(programmed[sequence]);
   double length = 0;
-  for (std::size_t n = sequence; n-- > 0 && length < kBehind_mm; length += ways[n].length) {
+  for (std::size_t n = sequence; n-- > 0 && length < kBehind_mm; length += programmed[n].length) {
     if (least <= enough) return least;
-    if (ways[n].length > 0) least = std::min(least, min_on(ways[n]));
+    if (programmed[n].length > 0) least = std::min(least, min_on(programmed[n]));
   }
   length = 0;
-  for (std::size_t n = sequence + 1; n < ways.size() && length < kAhead_mm; ++n) {
+  for (std::size_t n = sequence + 1; n < programmed.size() && length < kAhead_mm; ++n) {
     if (least <= enough) return least;
-    if (ways[n].length > 0) least = std::min(least, min_on(ways[n]));
-    length += ways[n].length;
+    if (programmed[n].length > 0) least = std::min(least, min_on(programmed[n]));
+    length += programmed[n].length;
   }
   return least;
 }

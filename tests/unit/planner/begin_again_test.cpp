@@ -26,8 +26,8 @@ TEST(RestToRestPlanner, GivesNoPathIndexTwiceToTwoProgramsOfAnEpoch) {
     ClBlock block;
     block.kind = BlockKind::kRapid;
     block.axis = to_array(pose.axis);
-    for (const double way_mm : {0.0, 3.0}) {  // nothing to approach, then a single path piece
-      block.tip_mm = to_array(pose.tip + Vector3(way_mm, 0, 0));
+    for (const double distance_mm : {0.0, 3.0}) {  // nothing to approach, then a single path piece
+      block.tip_mm = to_array(pose.tip + Vector3(distance_mm, 0, 0));
       ASSERT_EQ(planner.plan(block, writer).status, PlanStatus::kOk);
     }
     int moves = 0;

@@ -16,7 +16,7 @@ namespace {
 const Vector3 kFrom(-60, 0, 20), kTo(60, 0, 20);
 
 /// lai_machine() with a box about the joints in the middle of the cut from kFrom to kTo.
-MachineModel machine_with_a_box_on_the_way(double half_mm) {
+MachineModel machine_with_a_box_on_the_path(double half_mm) {
   MachineModel machine = lai_machine();
   Bench bench(machine);
   EXPECT_EQ(bench.plan(cut(0, kFrom, tilted(0.3, 0.2))).status, PlanStatus::kOk);
@@ -33,7 +33,7 @@ MachineModel machine_with_a_box_on_the_way(double half_mm) {
 
 TEST(KeepOutPlan, RefusesAWayThroughABoxBetweenTwoLegalBlocks) {
   for (const double half_mm : {1e-3, 0.1, 10.0}) {
-    const MachineModel machine = machine_with_a_box_on_the_way(half_mm);
+    const MachineModel machine = machine_with_a_box_on_the_path(half_mm);
     Bench bench(machine);
     ASSERT_EQ(bench.plan(cut(0, kFrom, tilted(0.3, 0.2))).status, PlanStatus::kOk);
     bench.forget();
@@ -47,7 +47,7 @@ TEST(KeepOutPlan, RefusesAWayThroughABoxBetweenTwoLegalBlocks) {
 }
 
 TEST(KeepOutPlan, PassesBesideABox) {
-  MachineModel machine = machine_with_a_box_on_the_way(1.0);
+  MachineModel machine = machine_with_a_box_on_the_path(1.0);
   KeepOut beside;
   KeepOutBox box = machine.keep_out.boxes()[0];
   box.joints |= 0b100;  // b4 stays where it is: over the box

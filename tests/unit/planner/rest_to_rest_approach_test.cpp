@@ -35,32 +35,32 @@ TEST(RestToRest, ApproachesTheFirstBlockUpAcrossAndDown) {
 
 TEST(RestToRest, DeclaresTheApproachOnceWhenItIsPublished) {
   Bench bench;
-  Approach way;
-  EXPECT_FALSE(bench.planner.take_approach(way));
+  Approach approach;
+  EXPECT_FALSE(bench.planner.take_approach(approach));
   ASSERT_EQ(bench.plan(block_of(BlockKind::kDwell, 0)).status, PlanStatus::kOk);
-  EXPECT_FALSE(bench.planner.take_approach(way));
+  EXPECT_FALSE(bench.planner.take_approach(approach));
   bench.forget();
   ASSERT_EQ(bench.plan_and_take(cut(1, {50, 0, 20}, tilted(0.3, 1))).status, PlanStatus::kOk);
-  ASSERT_TRUE(bench.planner.take_approach(way));
-  EXPECT_TRUE(way.is_planned);
-  EXPECT_EQ(way.sequence, 1U);
-  EXPECT_EQ(way.line, 101U);
-  EXPECT_EQ(way.from, bench.start);
+  ASSERT_TRUE(bench.planner.take_approach(approach));
+  EXPECT_TRUE(approach.is_planned);
+  EXPECT_EQ(approach.sequence, 1U);
+  EXPECT_EQ(approach.line, 101U);
+  EXPECT_EQ(approach.from, bench.start);
   const PathPiece& last = bench.paths.back();
-  EXPECT_EQ(way.branch, last.branch);
-  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(way.to[i], last.joints_end[i], 1e-9) << i;
-  EXPECT_EQ(way.retract, bench.model.clearance_mm);
-  EXPECT_EQ(way.descent, bench.model.clearance_mm);
+  EXPECT_EQ(approach.branch, last.branch);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(approach.to[i], last.joints_end[i], 1e-9) << i;
+  EXPECT_EQ(approach.retract, bench.model.clearance_mm);
+  EXPECT_EQ(approach.descent, bench.model.clearance_mm);
   double length = 0;
   for (std::size_t i = 0; i < bench.paths.size(); ++i) {
     const bool is_new = i == 0 || bench.paths[i].index != bench.paths[i - 1].index;
     if (is_new) length += bench.paths[i].length;
   }
-  EXPECT_NEAR(way.length, length, 1e-9);
-  EXPECT_NEAR(way.time, bench.duration(), 1e-9);
-  EXPECT_FALSE(bench.planner.take_approach(way));
+  EXPECT_NEAR(approach.length, length, 1e-9);
+  EXPECT_NEAR(approach.time, bench.duration(), 1e-9);
+  EXPECT_FALSE(bench.planner.take_approach(approach));
   ASSERT_EQ(bench.plan(cut(2, {60, 0, 20}, tilted(0.3, 1))).status, PlanStatus::kOk);
-  EXPECT_FALSE(bench.planner.take_approach(way)) << "one for a program";
+  EXPECT_FALSE(bench.planner.take_approach(approach)) << "one for a program";
 }
 
 TEST(RestToRest, RetractsOnlyAsFarAsTravelAllows) {
@@ -110,13 +110,13 @@ TEST(RestToRest, LeavesThePartBeforeTheFirstActionOfAProgramThatMayBeginInIt) {
   EXPECT_EQ(first->kind, PathKind::kJoint) << "it is off the part already";
   EXPECT_EQ(first->joints_begin, over);
 
-  Approach way;
-  ASSERT_TRUE(bench.planner.take_approach(way));
-  EXPECT_EQ(way.from, bench.start);
-  EXPECT_TRUE(way.has_rest);
-  EXPECT_EQ(way.retract, bench.model.clearance_mm);
-  EXPECT_EQ(way.descent, bench.model.clearance_mm);
-  EXPECT_NEAR(way.time, lift_time + bench.duration(), 1e-9);
+  Approach approach;
+  ASSERT_TRUE(bench.planner.take_approach(approach));
+  EXPECT_EQ(approach.from, bench.start);
+  EXPECT_TRUE(approach.has_rest);
+  EXPECT_EQ(approach.retract, bench.model.clearance_mm);
+  EXPECT_EQ(approach.descent, bench.model.clearance_mm);
+  EXPECT_NEAR(approach.time, lift_time + bench.duration(), 1e-9);
 }
 
 /// A tool that is longer than the one that broke in the cut, changed where the retraction ended.
@@ -153,9 +153,9 @@ TEST(RestToRest, LiftsALongerToolOffThePartBeforeJointsMove) {
   });
   ASSERT_NE(move, bench.paths.end());
   EXPECT_NEAR(longer.above(move->joints_begin), bench.model.clearance_mm, 1e-6);
-  Approach way;
-  ASSERT_TRUE(bench.planner.take_approach(way));
-  EXPECT_NEAR(way.lift, 70, 1e-9);
+  Approach approach;
+  ASSERT_TRUE(bench.planner.take_approach(approach));
+  EXPECT_NEAR(approach.lift, 70, 1e-9);
 }
 
 TEST(RestToRest, RefusesAProgramWhoseLongerToolCannotLeaveThePart) {

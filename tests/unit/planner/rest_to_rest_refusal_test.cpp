@@ -39,15 +39,15 @@ TEST(RestToRest, RefusesAWayThatLeavesTravelBetweenTwoLegalBlocks) {
   // The same way, with the end of travel put between the largest value at the ends and the one on
   // the way: refused, and nothing of it published.
   const double at_ends = std::max(before[0], wide.planner.joints()[0]);
-  double on_the_way = at_ends;
+  double between_ends = at_ends;
   for (double s = 0; s <= 1; s += 0.01) {
     const GreatCircle circle = find_great_circle(tilted(0.45, -0.6), tilted(0.45, 0.6));
     const Vector3 axis = axis_on_circle(circle.begin, circle.normal, s * circle.turn);
     const auto at = solve(narrow, narrow.tool_length_mm, ToolPose{tip, axis}, 0, before);
-    on_the_way = std::max(on_the_way, at.q[0]);
+    between_ends = std::max(between_ends, at.q[0]);
   }
-  ASSERT_GT(on_the_way, at_ends + 1);
-  narrow.joints[0].limits.travel_max = 0.5 * (on_the_way + at_ends);
+  ASSERT_GT(between_ends, at_ends + 1);
+  narrow.joints[0].limits.travel_max = 0.5 * (between_ends + at_ends);
   Bench tight(narrow);
   ASSERT_EQ(tight.plan(cut(0, tip, tilted(0.45, -0.6))).status, PlanStatus::kOk);
   tight.forget();

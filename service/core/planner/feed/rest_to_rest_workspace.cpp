@@ -135,7 +135,7 @@ void RestToRestPlanner::Workspace::stage_motion(ClBlock block) noexcept {
     fault = first_joints ? router.approach_joints(block, *first_joints, next, staging)
                          : router.approach(block, next, staging);
     if (router.lost_block()) return refuse(*router.lost_block());
-    staged_approach = router.way_in();
+    staged_approach = router.last_approach();
     result.axis_deviation_rad = router.axis_deviation_rad();
     next.is_first = false;
     count_window(0);

@@ -12,7 +12,7 @@ namespace meridian {
 BlockWindow::BlockWindow(const MachineModel& model, bool is_used)
     : is_used_(is_used), blocks_(is_used ? 2 * kWaiting : 1), look_(model), reported_(kReported) {}
 
-void BlockWindow::begin(const AheadSlack& slack) noexcept {
+void BlockWindow::begin(const LookAheadSlack& slack) noexcept {
   blocks_.clear();
   next_ = 0;
   is_whole_ = false;
@@ -52,16 +52,16 @@ std::uint64_t BlockWindow::reported_for(std::uint64_t sequence) const noexcept {
   return mark != marks_.rend() ? mark->looked_at : 0;
 }
 
-void BlockWindow::ask(const Start& start, std::span<const AheadWay> ways) noexcept {
+void BlockWindow::ask(const Start& start, std::span<const RouteAhead> routes) noexcept {
   ++questions_;
   asked_ = start;
-  follows_ = find_first(start.sequence + (start.is_on_its_way ? 0 : 1));
+  follows_ = find_first(start.sequence + (start.is_on_path ? 0 : 1));
   most_ = kMaxFollowed;
   if (const std::uint64_t told = reported_for(start.sequence); told > 0) {
     const int followed = static_cast<int>(std::min<std::uint64_t>(told, kWaiting));
-    most_ = start.is_on_its_way ? followed : followed - 1;
+    most_ = start.is_on_path ? followed : followed - 1;
   }
-  look_.begin(start.tool_length_mm, start.pose, slack_, ways);
+  look_.begin(start.tool_length_mm, start.pose, slack_, routes);
 }
 
 ClBlock BlockWindow::rest_of(ClBlock block) const noexcept {
@@ -85,7 +85,7 @@ bool BlockWindow::look() noexcept {
     const ClBlock& block = blocks_[follows_];
     if (block.sequence != asked_.sequence) {
       look_.follow(block);
-    } else if (asked_.is_on_its_way) {
+    } else if (asked_.is_on_path) {
       look_.follow(rest_of(block));
     }
   }
@@ -95,7 +95,7 @@ bool BlockWindow::look() noexcept {
 std::optional<FeedMark> BlockWindow::look_no_further() noexcept {
   if (!is_missing()) return {};
   most_ = look_.followed();
-  const int looked_at = std::max(1, most_ + (asked_.is_on_its_way ? 0 : 1));
+  const int looked_at = std::max(1, most_ + (asked_.is_on_path ? 0 : 1));
   const FeedMark mark{.sequence = asked_.sequence,
                       .looked_at = static_cast<std::uint64_t>(looked_at),
                       .is_late = true};

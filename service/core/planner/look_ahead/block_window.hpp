@@ -9,7 +9,7 @@
 #include "meridian/path/cl_block.hpp"
 #include "meridian/planner/feed_mark.hpp"
 #include "service/core/path/index_ring.hpp"
-#include "service/core/planner/route/ahead_look.hpp"
+#include "service/core/planner/route/route_look_ahead.hpp"
 #include "service/core/planner/singular/pole_look_ahead.hpp"
 
 namespace meridian {
@@ -31,7 +31,7 @@ class BlockWindow : public PoleLookAhead {
   BlockWindow(const MachineModel& model, bool is_used);
 
   /// A program begins; the path that is cut may lie off the programmed one by `slack`.
-  void begin(const AheadSlack& slack) noexcept;
+  void begin(const LookAheadSlack& slack) noexcept;
   /// No block comes any more.
   void end() noexcept { is_whole_ = true; }
   /// From now on looks that are told there go on over as many blocks. `marks` must stay.
@@ -53,9 +53,11 @@ class BlockWindow : public PoleLookAhead {
   /// `block` was planned without having to wait; none waits.
   void keep(const ClBlock& block) noexcept;
 
-  void ask(const Start& start, std::span<const AheadWay> ways) noexcept override;
+  void ask(const Start& start, std::span<const RouteAhead> routes) noexcept override;
   [[nodiscard]] bool look() noexcept override;
-  [[nodiscard]] std::span<const AheadWay> ways() const noexcept override { return look_.ways(); }
+  [[nodiscard]] std::span<const RouteAhead> routes() const noexcept override {
+    return look_.routes();
+  }
   [[nodiscard]] bool is_cut_short() const noexcept override {
     return !look_.is_settled() && look_.followed() >= most_;
   }
@@ -83,8 +85,8 @@ class BlockWindow : public PoleLookAhead {
   IndexRing<ClBlock> blocks_;
   std::int64_t next_ = 0;  ///< that is planned next
   bool is_whole_ = false;
-  AheadSlack slack_;
-  AheadLook look_;
+  LookAheadSlack slack_;
+  RouteLookAhead look_;
   std::span<const FeedMark> marks_;
   std::uint64_t questions_ = 0;
   Start asked_;

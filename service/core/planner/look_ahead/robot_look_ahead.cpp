@@ -23,7 +23,7 @@ constexpr int kMaxSteps = 8192;       // of a course
 
 class Course {
  public:
-  Course(const MachineModel& model, const AheadSlack& slack, const RobotStart& start) noexcept
+  Course(const MachineModel& model, const LookAheadSlack& slack, const RobotStart& start) noexcept
       : model_(model), slack_(slack), at_(start) {
     inside_ = place_at(at_.pose);
   }
@@ -115,7 +115,7 @@ class Course {
   }
 
   const MachineModel& model_;
-  AheadSlack slack_;
+  LookAheadSlack slack_;
   RobotStart at_;
   const Singularity* inside_ = nullptr;
   int steps_ = 0;
@@ -123,7 +123,7 @@ class Course {
 
 }  // namespace
 
-int follow_ahead(const MachineModel& model, const AheadSlack& slack, const RobotStart& start,
+int follow_ahead(const MachineModel& model, const LookAheadSlack& slack, const RobotStart& start,
                  std::span<const ClBlock> blocks) noexcept {
   Course course(model, slack, start);
   int carries = 0;

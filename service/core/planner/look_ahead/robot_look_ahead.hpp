@@ -5,7 +5,7 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/cl_block.hpp"
-#include "service/core/planner/route/ahead_way.hpp"
+#include "service/core/planner/route/route_ahead.hpp"
 
 namespace meridian {
 
@@ -22,7 +22,7 @@ struct RobotStart {
 /// redundant joint is followed no further than out on either side of it, as a pass may lead
 /// (RobotPass). Bounded work, no memory. Units: mm, rad. Proof:
 /// tests/property/planner/robot_start_test.cpp.
-[[nodiscard]] int follow_ahead(const MachineModel& model, const AheadSlack& slack,
+[[nodiscard]] int follow_ahead(const MachineModel& model, const LookAheadSlack& slack,
                                const RobotStart& start, std::span<const ClBlock> blocks) noexcept;
 
 }  // namespace meridian

@@ -62,7 +62,7 @@ bool SmoothPlanner::plan_what_waits(MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
   if (w.window.waiting() == 0) return true;
   const auto begin = w.window.first(w.looked_at);
-  const AheadSlack slack = w.slack();
+  const LookAheadSlack slack = w.slack();
   w.plain.look_at(begin, slack.tip_mm, slack.axis_rad);
   while (w.window.waiting() > 0) {
     if (plan_one(w.window.front(), writer).status != PlanStatus::kOk) return false;

@@ -69,7 +69,7 @@ struct SmoothPlanner::Workspace {
   }
 
   /// How far the blocks may be cut from where they are programmed.
-  [[nodiscard]] AheadSlack slack() const noexcept {
+  [[nodiscard]] LookAheadSlack slack() const noexcept {
     if (is_smooth()) return {tolerance().tip_mm, pole_tolerance_rad()};
     const bool relaxed_axes =
         redundant_joint(model) >= 0 && model.pole_policy == PolePolicy::kRelax;

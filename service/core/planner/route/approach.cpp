@@ -7,7 +7,7 @@
 #include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "service/core/planner/look_ahead/robot_look_ahead.hpp"
-#include "service/core/planner/route/ahead_look.hpp"
+#include "service/core/planner/route/route_look_ahead.hpp"
 #include "service/core/planner/route/router.hpp"
 
 /// The approach: retract along the tool axis, joint move, down. Part of Router.
@@ -48,9 +48,10 @@ double share_in_tip_box(const TipBox& box, const Array3& from, const Array3& to)
 }
 
 /// Adds length and time of what is staged from `begin` on.
-void add_way(const Staging::Mark& begin, const Staging& staged, Approach& way) noexcept {
-  for (int n = begin.paths; n < staged.path_count; ++n) way.length += staged.paths[n].length;
-  for (int n = begin.times; n < staged.time_count; ++n) way.time += staged.times[n].duration;
+void add_to_approach(const Staging::Mark& begin, const Staging& staged,
+                     Approach& approach) noexcept {
+  for (int n = begin.paths; n < staged.path_count; ++n) approach.length += staged.paths[n].length;
+  for (int n = begin.times; n < staged.time_count; ++n) approach.time += staged.times[n].duration;
 }
 
 }  // namespace
@@ -117,7 +118,7 @@ PathFault Router::retract(const ClBlock& block, PlanCursor& cursor, Staging& out
   if (is_fault(fault)) return fault;
   cursor.pose = lifted(rest, up);
   retracted_.retract = up;
-  add_way(begin, out, retracted_);
+  add_to_approach(begin, out, retracted_);
   return {};
 }
 
@@ -137,17 +138,17 @@ PathFault Router::lift_longer_tool(const Job& rapid, PlanCursor& cursor, Staging
     const int joint = first_joint_outside_travel(model_, at.q, 0);
     return {PathFault::Kind::kTravel, joint, joint >= 0 ? limited_value(model_, at.q, joint) : 0.0};
   }
-  way_in_.lift = up;
+  last_approach_.lift = up;
   return run_lift(make_line(cursor.pose, lifted(cursor.pose, up)), rapid, cursor, out);
 }
 
-PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job& job,
+PathFault Router::approach_by(const ToolPose& target, const Candidate& candidate, const Job& job,
                               PlanCursor& cursor, Staging& out) noexcept {
   const std::uint32_t rotary = rotary_mask(model_);
   Job rapid = job;
   rapid.feed_mm_per_s = 0;
   PathFault fault;
-  const double apart = largest_difference(way.joints, cursor.joints);
+  const double apart = largest_difference(candidate.joints, cursor.joints);
   const double clearance = model_.clearance_mm;
   double up = 0, down = 0;
   if (apart > kNearby) {
@@ -161,12 +162,13 @@ PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job&
       fault = run_lift(make_line(cursor.pose, lifted(cursor.pose, up)), rapid, cursor, out);
       if (is_fault(fault)) return fault;
     }
-    down = find_clearance(target, way.joints, cursor.tool_length_mm, clearance);
+    down = find_clearance(target, candidate.joints, cursor.tool_length_mm, clearance);
   }
-  way_in_.retract = up;
-  way_in_.descent = down;
+  last_approach_.retract = up;
+  last_approach_.descent = down;
   const JointVector over =
-      down > 0 ? solve_near(lifted(target, down), way.joints, cursor.tool_length_mm).q : way.joints;
+      down > 0 ? solve_near(lifted(target, down), candidate.joints, cursor.tool_length_mm).q
+               : candidate.joints;
   if (largest_difference(over, cursor.joints) > kThere) {
     fault = run(make_joint_move(cursor.joints, over, rotary), rapid, 0, cursor, out);
     if (is_fault(fault)) return fault;
@@ -177,56 +179,57 @@ PathFault Router::approach_by(const ToolPose& target, const Way& way, const Job&
   return fault;
 }
 
-void Router::describe_way_in(const Way& way, const Job& job, const PlanCursor& from,
-                             const Staging::Mark& begin, const Staging& staged) noexcept {
-  way_in_.is_planned = true;
-  way_in_.epoch = from.epoch;
-  way_in_.sequence = job.block.sequence;
-  way_in_.line = job.block.line;
+void Router::describe_approach(const Candidate& candidate, const Job& job, const PlanCursor& from,
+                               const Staging::Mark& begin, const Staging& staged) noexcept {
+  last_approach_.is_planned = true;
+  last_approach_.epoch = from.epoch;
+  last_approach_.sequence = job.block.sequence;
+  last_approach_.line = job.block.line;
   if (from.has_retracted) {
-    way_in_.from = retracted_.from;
-    way_in_.retract = retracted_.retract;
-    way_in_.has_rest = true;
-    way_in_.length = retracted_.length;
-    way_in_.time = retracted_.time;
+    last_approach_.from = retracted_.from;
+    last_approach_.retract = retracted_.retract;
+    last_approach_.has_rest = true;
+    last_approach_.length = retracted_.length;
+    last_approach_.time = retracted_.time;
   } else {
-    way_in_.from = from.joints;
+    last_approach_.from = from.joints;
   }
-  way_in_.to = way.joints;
-  way_in_.branch = static_cast<std::uint8_t>(way.branch);
-  add_way(begin, staged, way_in_);
+  last_approach_.to = candidate.joints;
+  last_approach_.branch = static_cast<std::uint8_t>(candidate.branch);
+  add_to_approach(begin, staged, last_approach_);
 }
 
-void Router::take_looked(std::span<const AheadWay> found, Ways& ways) noexcept {
+void Router::take_looked(std::span<const RouteAhead> found, Candidates& candidates) noexcept {
   for (std::size_t n = 0; n < found.size(); ++n) {
-    ways.way[n].carries = found[n].carries;
-    ways.way[n].cost += found[n].time_s;
-    if (found[n].end == AheadEnd::kLost) ways.way[n].lost = found[n].lost;
+    candidates.candidate[n].carries = found[n].carries;
+    candidates.candidate[n].cost += found[n].time_s;
+    if (found[n].end == RouteEnd::kLost) candidates.candidate[n].lost = found[n].lost;
   }
-  ways.sort();
+  candidates.sort();
 }
 
 void Router::look_along(const ClBlock& block, const ToolPose& start, double tool_length_mm,
-                        Ways& ways) const noexcept {
+                        Candidates& candidates) const noexcept {
   const std::span<const ClBlock> blocks = behind(block);
   if (blocks.empty()) return;
-  const AheadWays found = ahead_of(ways);
-  AheadLook look(model_);
-  look.begin(tool_length_mm, start, slack_, {found.data(), static_cast<std::size_t>(ways.count)});
+  const RoutesAhead found = ahead_of(candidates);
+  RouteLookAhead look(model_);
+  look.begin(tool_length_mm, start, slack_,
+             {found.data(), static_cast<std::size_t>(candidates.count)});
   for (const ClBlock& next : blocks) look.follow(next);
-  take_looked(look.ways(), ways);
+  take_looked(look.routes(), candidates);
 }
 
 void Router::look_along_arm(const ClBlock& block, const ToolPose& start, double tool_length_mm,
-                            Ways& ways) const noexcept {
-  const AheadSlack slack{std::max(slack_.tip_mm, model_.tolerances.tip_mm),
-                         std::max(slack_.axis_rad, model_.tolerances.axis_rad)};
-  for (int n = 0; n < ways.count; ++n) {
-    Way& way = ways.way[n];
-    way.carries =
-        follow_ahead(model_, slack, {tool_length_mm, start, way.branch, way.joints}, behind(block));
+                            Candidates& candidates) const noexcept {
+  const LookAheadSlack slack{std::max(slack_.tip_mm, model_.tolerances.tip_mm),
+                             std::max(slack_.axis_rad, model_.tolerances.axis_rad)};
+  for (int n = 0; n < candidates.count; ++n) {
+    Candidate& candidate = candidates.candidate[n];
+    candidate.carries = follow_ahead(
+        model_, slack, {tool_length_mm, start, candidate.branch, candidate.joints}, behind(block));
   }
-  ways.sort();
+  candidates.sort();
 }
 
 std::span<const ClBlock> Router::from(const ClBlock& block) const noexcept {
@@ -242,21 +245,21 @@ std::span<const ClBlock> Router::behind(const ClBlock& block) const noexcept {
   return all.empty() || block.is_arc ? all : all.subspan(1);
 }
 
-void Router::look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,
-                         Ways& ways) noexcept {
-  if (look_ahead_ == nullptr) return look_along(block, start, tool_length_mm, ways);
-  const AheadWays found = ahead_of(ways);
+void Router::look_past(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                       Candidates& candidates) noexcept {
+  if (look_ahead_ == nullptr) return look_along(block, start, tool_length_mm, candidates);
+  const RoutesAhead found = ahead_of(candidates);
   look_ahead_->ask({block.sequence, false, start, tool_length_mm},
-                   {found.data(), static_cast<std::size_t>(ways.count)});
+                   {found.data(), static_cast<std::size_t>(candidates.count)});
   needs_ahead_ = !look_ahead_->look();
-  take_looked(look_ahead_->ways(), ways);
+  take_looked(look_ahead_->routes(), candidates);
 }
 
-Router::AheadWays Router::ahead_of(const Ways& ways) const noexcept {
-  AheadWays found;
-  for (int n = 0; n < ways.count; ++n) {
-    found[static_cast<std::size_t>(n)] = {ways.way[n].branch,
-                                          ways.way[n].joints[redundant_joint(model_)]};
+Router::RoutesAhead Router::ahead_of(const Candidates& candidates) const noexcept {
+  RoutesAhead found;
+  for (int n = 0; n < candidates.count; ++n) {
+    found[static_cast<std::size_t>(n)] = {candidates.candidate[n].branch,
+                                          candidates.candidate[n].joints[redundant_joint(model_)]};
   }
   return found;
 }
@@ -265,7 +268,7 @@ PathFault Router::approach_joints(const ClBlock& block, const JointVector& to, P
                                   Staging& out) noexcept {
   deviation_rad_ = 0;
   lost_.reset();
-  way_in_ = {};
+  last_approach_ = {};
   const int outside = first_joint_outside_travel(model_, to, 1e-9);
   if (outside >= 0) {
     return {PathFault::Kind::kTravel, outside, limited_value(model_, to, outside)};
@@ -280,10 +283,10 @@ PathFault Router::approach_joints(const ClBlock& block, const JointVector& to, P
     if (is_fault(fault)) return fault;
   }
   cursor.pose = forward(model_, cursor.tool_length_mm, cursor.joints);
-  Way way;
-  way.joints = cursor.joints;
-  way.branch = branch_of(cursor.pose, cursor.joints, cursor.tool_length_mm);
-  describe_way_in(way, job, from, mark, out);
+  Candidate candidate;
+  candidate.joints = cursor.joints;
+  candidate.branch = branch_of(cursor.pose, cursor.joints, cursor.tool_length_mm);
+  describe_approach(candidate, job, from, mark, out);
   return {};
 }
 
@@ -302,42 +305,42 @@ PathFault Router::approach(const ClBlock& block, PlanCursor& cursor, Staging& ou
   deviation_rad_ = 0;
   const ToolPose target{block.is_arc ? find_arc_begin(block) : to_vector(block.tip_mm),
                         relaxed(to_vector(block.axis), kPoleDeviation_rad)};
-  Ways ways = find_ways(target, cursor);
+  Candidates candidates = find_candidates(target, cursor);
   const int free = redundant_joint(model_);
   // Room to turn counts as well: a winding at the end of travel is taken only where no other is.
   if (free >= 0 && !model_.joints[free].is_endless) {
     const JointLimits& limits = model_.joints[free].limits;
-    for (int n = 0; n < ways.count; ++n) {
-      const double at = ways.way[n].joints[free];
+    for (int n = 0; n < candidates.count; ++n) {
+      const double at = candidates.candidate[n].joints[free];
       const double room = std::min(at - limits.travel_min, limits.travel_max - at);
-      ways.way[n].cost += std::max(0.0, std::numbers::pi - room) / limits.velocity;
+      candidates.candidate[n].cost += std::max(0.0, std::numbers::pi - room) / limits.velocity;
     }
-    ways.sort();
+    candidates.sort();
   }
   if (free >= 0) {
     // Inside the tolerance about the pole the joint is free: nothing follows from where it begins.
     const bool is_free = pole_distance(model_, target.axis) < on_pole_rad_;
-    if (!is_free) look_along(block, target, cursor.tool_length_mm, ways);
+    if (!is_free) look_along(block, target, cursor.tool_length_mm, candidates);
   } else if (model_.family == MachineFamily::kRobot) {
-    look_along_arm(block, target, cursor.tool_length_mm, ways);
+    look_along_arm(block, target, cursor.tool_length_mm, candidates);
   }
   const Job job{block, MotionKind::kApproach, model_.approach_feed_mm_per_s, 0};
   PathFault first{PathFault::Kind::kUnreachable, -1, 0};
-  if (ways.count == 0) first = find_target_fault(target, cursor);
+  if (candidates.count == 0) first = find_target_fault(target, cursor);
   lost_.reset();
   bool is_tried = false;
-  for (int n = 0; n < ways.count; ++n) {
-    const Way& way = ways.way[n];
-    if (way.lost) {
-      if (!lost_) lost_ = way.lost;
+  for (int n = 0; n < candidates.count; ++n) {
+    const Candidate& candidate = candidates.candidate[n];
+    if (candidate.lost) {
+      if (!lost_) lost_ = candidate.lost;
       continue;
     }
     PlanCursor trial = cursor;
     const Staging::Mark mark = out.mark();
-    way_in_ = {};
-    const PathFault fault = approach_by(target, way, job, trial, out);
+    last_approach_ = {};
+    const PathFault fault = approach_by(target, candidate, job, trial, out);
     if (!is_fault(fault)) {
-      describe_way_in(way, job, cursor, mark, out);
+      describe_approach(candidate, job, cursor, mark, out);
       cursor = trial;
       cursor.pose = target;
       lost_.reset();

@@ -76,7 +76,7 @@ void FreeSpline::grade(std::span<const Node> nodes) noexcept {
   }
 }
 
-bool FreeSpline::place_knots(const SpanLookup& spans, std::span<const Node> nodes) noexcept {
+bool FreeSpline::set_knots(const SpanLookup& spans, std::span<const Node> nodes) noexcept {
   sums_[0] = 0;
   for (std::size_t n = 1; n < nodes.size(); ++n) {
     sums_[n] = sums_[n - 1] + 2 * (nodes[n].u - nodes[n - 1].u) / (gaps_[n - 1] + gaps_[n]);
@@ -160,7 +160,7 @@ bool FreeSpline::fit(const SpanLookup& spans, std::span<const Node> nodes,
   std::fill_n(gaps_.begin(), nodes.size(), shape.max_gap_mm);
   for (int round = 0;; ++round) {
     grade(nodes);
-    if (round == kSplineRounds || !place_knots(spans, nodes)) return false;
+    if (round == kSplineRounds || !set_knots(spans, nodes)) return false;
     if (!narrow(nodes, windows, shape)) break;
   }
   fix_ends(begin, end);

@@ -54,8 +54,8 @@ class FreeSpline {
 
   /// Lets gaps grow from node to node no faster than the spline's shape stands.
   void grade(std::span<const PoleWalls::Node> nodes) noexcept;
-  [[nodiscard]] bool place_knots(const SpanLookup& spans,
-                                 std::span<const PoleWalls::Node> nodes) noexcept;
+  [[nodiscard]] bool set_knots(const SpanLookup& spans,
+                               std::span<const PoleWalls::Node> nodes) noexcept;
   /// The windows of the control values; where one is too narrow gaps are made smaller. True: there
   /// was one.
   [[nodiscard]] bool narrow(std::span<const PoleWalls::Node> nodes,

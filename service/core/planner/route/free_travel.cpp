@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kTravelSteps = 8;
 constexpr double kMargin_rad = 1e-4;
-constexpr double kNoWay_rad = 1e-9;  // a joint at the end of travel that leaves it is inside
+constexpr double kNoMotion_rad = 1e-9;  // a joint at the end of travel that leaves it is inside
 constexpr double kMinShare = 1e-6;
 
 }  // namespace
@@ -25,13 +25,13 @@ JointVector FreeTravel::turned(double by) const noexcept {
   return joints;
 }
 
-FreeTravel::Way FreeTravel::walk(const JointSpan& span, const JointVector& joints,
-                                 double by) const noexcept {
+FreeTravel::Walk FreeTravel::walk(const JointSpan& span, const JointVector& joints,
+                                  double by) const noexcept {
   const int free = redundant_joint(model_);
   const double length = span.band.length;
-  Way way;
-  way.end = joints;
-  way.begin = way.low = way.high = way.end[free];
+  Walk walked;
+  walked.end = joints;
+  walked.begin = walked.low = walked.high = walked.end[free];
   double step = length / kTravelSteps, last_step = 0, last_slope = 0, bend = 0;
   for (double x = 0; x < length;) {
     const double next = std::min(length, x + step);
@@ -39,53 +39,53 @@ FreeTravel::Way FreeTravel::walk(const JointSpan& span, const JointVector& joint
     const auto there =
         span.is_free_driven
             ? solve_held(model_, tool_length_mm_, pose, quintic_at(span.free, next / length) + by)
-            : solve(model_, tool_length_mm_, pose, span.branch, way.end);
-    way.is_there = there.status != SolveStatus::kUnreachable;
-    if (!way.is_there) return way;
-    const double turn = there.q[free] - way.end[free];
+            : solve(model_, tool_length_mm_, pose, span.branch, walked.end);
+    walked.is_there = there.status != SolveStatus::kUnreachable;
+    if (!walked.is_there) return walked;
+    const double turn = there.q[free] - walked.end[free];
     if (std::abs(turn) > kMaxFollowed_rad && step > kMinShare * length) {
       step *= 0.5;
       continue;
     }
     const double slope = turn / (next - x);
     if (x > 0) bend = std::max(bend, std::abs(slope - last_slope) * std::max(step, last_step));
-    way.is_inside &= first_joint_outside_travel(model_, there.q, kTravelMargin) < 0;
-    way.low = std::min(way.low, there.q[free]);
-    way.high = std::max(way.high, there.q[free]);
-    way.end = there.q;
+    walked.is_inside &= first_joint_outside_travel(model_, there.q, kTravelMargin) < 0;
+    walked.low = std::min(walked.low, there.q[free]);
+    walked.high = std::max(walked.high, there.q[free]);
+    walked.end = there.q;
     x = next;
     last_slope = slope;
     last_step = step;
     step = std::min(2 * step, length / kTravelSteps);
   }
-  way.margin = kMargin_rad + 0.5 * bend;
-  return way;
+  walked.margin = kMargin_rad + 0.5 * bend;
+  return walked;
 }
 
-std::optional<double> FreeTravel::find_outside(const Way& way) const noexcept {
+std::optional<double> FreeTravel::find_outside(const Walk& walked) const noexcept {
   const JointLimits& limits = model_.joints[redundant_joint(model_)].limits;
-  const double high = way.high + way.margin, low = way.low - way.margin;
-  if (way.high > way.begin + kNoWay_rad && high > limits.travel_max) return high;
-  if (way.low < way.begin - kNoWay_rad && low < limits.travel_min) return low;
+  const double high = walked.high + walked.margin, low = walked.low - walked.margin;
+  if (walked.high > walked.begin + kNoMotion_rad && high > limits.travel_max) return high;
+  if (walked.low < walked.begin - kNoMotion_rad && low < limits.travel_min) return low;
   return {};
 }
 
 std::optional<double> FreeTravel::follow(const JointSpan& span) noexcept {
-  const Way way = walk(span, at_, 0);
-  if (!way.is_there) return {};  // the feed finds it too
-  const auto outside = find_outside(way);
-  if (!outside) at_ = way.end;
+  const Walk walked = walk(span, at_, 0);
+  if (!walked.is_there) return {};  // the feed finds it too
+  const auto outside = find_outside(walked);
+  if (!outside) at_ = walked.end;
   return outside;
 }
 
 bool FreeTravel::fits(const JointSpan& span, double by) const noexcept {
-  const Way way = walk(span, turned(by), by);
-  return way.is_there && way.is_inside && !find_outside(way);
+  const Walk walked = walk(span, turned(by), by);
+  return walked.is_there && walked.is_inside && !find_outside(walked);
 }
 
 bool FreeTravel::fits_from(const JointVector& joints, const JointSpan& span) const noexcept {
-  const Way way = walk(span, joints, 0);
-  return way.is_there && way.is_inside && !find_outside(way);
+  const Walk walked = walk(span, joints, 0);
+  return walked.is_there && walked.is_inside && !find_outside(walked);
 }
 
 }  // namespace meridian

@@ -48,7 +48,7 @@ class FreeTravel {
   }
 
  private:
-  struct Way {
+  struct Walk {
     JointVector end{};
     double begin = 0, low = 0, high = 0, margin = 0;  ///< of the redundant joint
     bool is_inside = true;                            ///< all joints, at the places looked at
@@ -57,9 +57,9 @@ class FreeTravel {
   /// The joints at the begin, the redundant joint turned by `by`.
   [[nodiscard]] JointVector turned(double by) const noexcept;
   /// From `joints`; a driven redundant joint is turned by `by`.
-  [[nodiscard]] Way walk(const JointSpan& span, const JointVector& joints,
-                         double by) const noexcept;
-  [[nodiscard]] std::optional<double> find_outside(const Way& way) const noexcept;
+  [[nodiscard]] Walk walk(const JointSpan& span, const JointVector& joints,
+                          double by) const noexcept;
+  [[nodiscard]] std::optional<double> find_outside(const Walk& walked) const noexcept;
 
   const MachineModel& model_;
   JointVector at_{};

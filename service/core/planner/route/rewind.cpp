@@ -5,7 +5,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/path/build_piece.hpp"
-#include "service/core/planner/route/ahead_look.hpp"
+#include "service/core/planner/route/route_look_ahead.hpp"
 #include "service/core/planner/route/router.hpp"
 
 /// Rewinds off the part: which solution they lead to, and the motion. Part of Router.
@@ -62,22 +62,22 @@ RewindSolutions Router::find_rewinds(const ClBlock& block, const RewindCause& ca
     on.joints = other.q;
     add_windings(on, in_force, cursor, found);
   }
-  look_behind_rewind(block, cause, cursor, found);
+  look_past_rewind(block, cause, cursor, found);
   return found;
 }
 
-void Router::look_behind_rewind(const ClBlock& block, const RewindCause& cause,
-                                const PlanCursor& cursor, RewindSolutions& found) noexcept {
+void Router::look_past_rewind(const ClBlock& block, const RewindCause& cause,
+                              const PlanCursor& cursor, RewindSolutions& found) noexcept {
   const int free = redundant_joint(model_);
   const std::span<RewindSolution> all = found.all();
-  std::array<AheadWay, RewindSolutions::kMax> ways;
+  std::array<RouteAhead, RewindSolutions::kMax> routes;
   for (std::size_t n = 0; n < all.size(); ++n) {
     // Beside the pole the redundant joint may stand off the programmed axis: blocks start on it.
     const RewindTarget& to = all[n].target;
     const auto exact = solve(model_, cursor.tool_length_mm, cursor.pose, to.branch, to.joints);
-    ways[n] = {to.branch, exact.q[free]};
+    routes[n] = {to.branch, exact.q[free]};
   }
-  const std::span<AheadWay> asked(ways.data(), all.size());
+  const std::span<RouteAhead> asked(routes.data(), all.size());
   bool is_cut_short = false;
   if (look_ahead_ != nullptr) {
     // A line is followed from the tool to its end, an arc as a whole where the tool is at its
@@ -87,20 +87,20 @@ void Router::look_behind_rewind(const ClBlock& block, const RewindCause& cause,
                       cursor.tool_length_mm},
                      asked);
     needs_ahead_ = !look_ahead_->look();
-    std::copy_n(look_ahead_->ways().begin(), asked.size(), asked.begin());
+    std::copy_n(look_ahead_->routes().begin(), asked.size(), asked.begin());
     is_cut_short = look_ahead_->is_cut_short();
   } else {
-    AheadLook look(model_);
+    RouteLookAhead look(model_);
     look.begin(cursor.tool_length_mm, cursor.pose, slack_, asked);
     for (const ClBlock& next : from(block)) look.follow(next);
-    std::copy_n(look.ways().begin(), asked.size(), asked.begin());
+    std::copy_n(look.routes().begin(), asked.size(), asked.begin());
     is_cut_short = !look.is_settled();
   }
   const JointLimits& limits = model_.joints[free].limits;
   const bool is_upwards = cause.fault.value > cursor.joints[free];
   for (std::size_t n = 0; n < all.size(); ++n) {
-    all[n].carries = ways[n].carries;
-    all[n].time_s += ways[n].time_s;
+    all[n].carries = routes[n].carries;
+    all[n].time_s += routes[n].time_s;
     if (is_cut_short && cause.fault.joint == free) {
       all[n].room = room_of(limits, all[n].target.joints[free], is_upwards);
     }

@@ -7,7 +7,7 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/planner/rewind.hpp"
-#include "service/core/planner/route/ahead_way.hpp"
+#include "service/core/planner/route/route_ahead.hpp"
 
 namespace meridian {
 

@@ -57,28 +57,31 @@ double Router::bound_turn(const PathPiece& path, double programmed_rad, double b
                           double share_per_s) const noexcept {
   const double tolerance_rad = std::min(on_pole_rad_, model_.tolerances.axis_rad);
   const double tip_mm = tip_length(path);
-  const double way_mm = std::hypot(tip_mm, kAxisLength_mm_per_rad * programmed_rad);
-  const bool is_near = way_mm < kInside * kSpeedReach_mm;
+  const double path_mm = std::hypot(tip_mm, kAxisLength_mm_per_rad * programmed_rad);
+  const bool is_near = path_mm < kInside * kSpeedReach_mm;
   const double tip_mm_per_s = std::max(share_per_s * tip_mm, is_near ? before_mm_per_s : 0.0);
   const double rad_per_s =
       std::max(share_per_s * programmed_rad, tolerance_rad * tip_mm_per_s / kSpeedReach_mm);
   return path.axis_turn > 0 ? std::min(share_per_s, rad_per_s / path.axis_turn) : share_per_s;
 }
 
-void Router::Ways::sort() noexcept {
-  const auto is_before = [](const Way& a, const Way& b) {
+void Router::Candidates::sort() noexcept {
+  const auto is_before = [](const Candidate& a, const Candidate& b) {
     return a.carries != b.carries ? a.carries > b.carries : a.cost < b.cost;
   };
   for (int n = 1; n < count; ++n) {
-    for (int k = n; k > 0 && is_before(way[k], way[k - 1]); --k) std::swap(way[k], way[k - 1]);
+    for (int k = n; k > 0 && is_before(candidate[k], candidate[k - 1]); --k)
+      std::swap(candidate[k], candidate[k - 1]);
   }
 }
 
-Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept {
-  Ways ways;
+Router::Candidates Router::find_candidates(const ToolPose& pose,
+                                           const PlanCursor& cursor) const noexcept {
+  Candidates candidates;
   const int free = redundant_joint(model_);
   const auto add = [&](const JointVector& q, int branch) {
-    if (ways.count == kMaxWays || first_joint_outside_travel(model_, q, 1e-9) >= 0) return;
+    if (candidates.count == kMaxCandidates || first_joint_outside_travel(model_, q, 1e-9) >= 0)
+      return;
     if (keep_out_at(model_.keep_out, q) >= 0) return;
     if (tip_axis_outside(model_, cursor.tool_length_mm, q) >= 0) return;
     double cost = 0;
@@ -86,7 +89,7 @@ Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) c
     for (int i = 0; i < limited_count(model_); ++i) {
       cost = std::max(cost, std::abs(to[i] - from[i]) / limited_spec(model_, i).limits.velocity);
     }
-    ways.way[ways.count++] = {q, cost, branch, 0, {}};
+    candidates.candidate[candidates.count++] = {q, cost, branch, 0, {}};
   };
   for (int branch = 0; branch < branch_count(model_); ++branch) {
     auto at = solve(model_, cursor.tool_length_mm, pose, branch, cursor.joints);
@@ -104,12 +107,12 @@ Router::Ways Router::find_ways(const ToolPose& pose, const PlanCursor& cursor) c
       }
     }
   }
-  ways.sort();
-  return ways;
+  candidates.sort();
+  return candidates;
 }
 
 bool Router::is_reachable(const ClBlock& block, const PlanCursor& cursor) const noexcept {
-  return find_ways({to_vector(block.tip_mm), to_vector(block.axis)}, cursor).count > 0;
+  return find_candidates({to_vector(block.tip_mm), to_vector(block.axis)}, cursor).count > 0;
 }
 
 PathFault Router::run(const PathPiece& path, const Job& job, double share, PlanCursor& cursor,

@@ -12,8 +12,8 @@
 #include "meridian/planner/approach.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
 #include "service/core/planner/feed/leg_planner.hpp"
-#include "service/core/planner/route/ahead_way.hpp"
 #include "service/core/planner/route/rewind_solutions.hpp"
+#include "service/core/planner/route/route_ahead.hpp"
 #include "service/core/planner/route/staging.hpp"
 #include "service/core/planner/singular/pole_look_ahead.hpp"
 
@@ -49,7 +49,7 @@ class Router {
   /// Blocks that are known, among them those that are planned: where branch and winding can be
   /// chosen, the ways that carry farthest through them come first, of these the cheapest. Empty:
   /// the nearest. They stay as they are until this is called again.
-  void look_at(std::span<const ClBlock> ahead, const AheadSlack& slack) noexcept {
+  void look_at(std::span<const ClBlock> ahead, const LookAheadSlack& slack) noexcept {
     ahead_ = ahead;
     slack_ = slack;
   }
@@ -71,7 +71,7 @@ class Router {
   /// allows, in the name of `block`, which is done there: the first part of the approach.
   [[nodiscard]] PathFault retract(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
 
-  /// Brings the first block's begin under the tool. Ways that are lost (AheadWay) are none: where
+  /// Brings the first block's begin under the tool. Ways that are lost (RouteAhead) are none: where
   /// no other is left, lost_block() says why, else it is nothing.
   [[nodiscard]] PathFault approach(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
   /// The same to joints that are known: all of them straight there, at the feed of the block (1 rad
@@ -81,7 +81,7 @@ class Router {
                                           PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] const std::optional<BlockReject>& lost_block() const noexcept { return lost_; }
   /// The way that the last approach() found.
-  [[nodiscard]] const Approach& way_in() const noexcept { return way_in_; }
+  [[nodiscard]] const Approach& last_approach() const noexcept { return last_approach_; }
 
   /// What leaves its travel, and where the blocks are followed from that show which solution
   /// carries farthest.
@@ -110,18 +110,18 @@ class Router {
   [[nodiscard]] Vector3 relaxed(const Vector3& axis, double within_rad) noexcept;
 
  private:
-  static constexpr int kMaxWays = 24;
+  static constexpr int kMaxCandidates = 24;
 
   /// A value of the redundant joint at the end of a way, from one branch and winding.
-  struct Way {
+  struct Candidate {
     JointVector joints{};
     double cost = 0;
     int branch = 0;
     int carries = 0;  ///< blocks ahead, where they were looked at
     std::optional<BlockReject> lost;
   };
-  struct Ways {
-    std::array<Way, kMaxWays> way;
+  struct Candidates {
+    std::array<Candidate, kMaxCandidates> candidate;
     int count = 0;
 
     /// Those that carry farthest first, then the cheapest, equal ones as they were found. Takes no
@@ -145,30 +145,31 @@ class Router {
   /// that asks for `before_mm_per_s`. What is left of `share_per_s`.
   [[nodiscard]] double bound_turn(const PathPiece& path, double programmed_rad,
                                   double before_mm_per_s, double share_per_s) const noexcept;
-  [[nodiscard]] Ways find_ways(const ToolPose& pose, const PlanCursor& cursor) const noexcept;
+  [[nodiscard]] Candidates find_candidates(const ToolPose& pose,
+                                           const PlanCursor& cursor) const noexcept;
   /// Sorts `ways`, at `start` on `block`, by what is known of the blocks behind it: of the
   /// program's begin.
   void look_along(const ClBlock& block, const ToolPose& start, double tool_length_mm,
-                  Ways& ways) const noexcept;
+                  Candidates& candidates) const noexcept;
   /// The same for a robot.
   void look_along_arm(const ClBlock& block, const ToolPose& start, double tool_length_mm,
-                      Ways& ways) const noexcept;
+                      Candidates& candidates) const noexcept;
   [[nodiscard]] std::span<const ClBlock> behind(const ClBlock& block) const noexcept;
   /// `block` and those behind it, of those that are known.
   [[nodiscard]] std::span<const ClBlock> from(const ClBlock& block) const noexcept;
-  using AheadWays = std::array<AheadWay, kMaxWays>;
-  [[nodiscard]] AheadWays ahead_of(const Ways& ways) const noexcept;
-  static void take_looked(std::span<const AheadWay> found, Ways& ways) noexcept;
+  using RoutesAhead = std::array<RouteAhead, kMaxCandidates>;
+  [[nodiscard]] RoutesAhead ahead_of(const Candidates& candidates) const noexcept;
+  static void take_looked(std::span<const RouteAhead> found, Candidates& candidates) noexcept;
   /// The same by what the look-ahead says, where there is one.
-  void look_behind(const ClBlock& block, const ToolPose& start, double tool_length_mm,
-                   Ways& ways) noexcept;
+  void look_past(const ClBlock& block, const ToolPose& start, double tool_length_mm,
+                 Candidates& candidates) noexcept;
   /// Adds the windings of `on`, a solution where the tool rests, that the machine can stand on, the
   /// nearest first.
   void add_windings(const RewindTarget& on, int branch_in_force, const PlanCursor& cursor,
                     RewindSolutions& found) const noexcept;
   /// Sorts `found` by the blocks that follow.
-  void look_behind_rewind(const ClBlock& block, const RewindCause& cause, const PlanCursor& cursor,
-                          RewindSolutions& found) noexcept;
+  void look_past_rewind(const ClBlock& block, const RewindCause& cause, const PlanCursor& cursor,
+                        RewindSolutions& found) noexcept;
   /// To `target` with the tip at `over`: the axis goes to the pole, the redundant joint turns
   /// there, and the axis comes back on the other side.
   [[nodiscard]] PathFault turn_through_pole(const ToolPose& over, const RewindTarget& target,
@@ -215,14 +216,14 @@ class Router {
   /// to `free_end`.
   [[nodiscard]] bool is_straight_passage(const PathPiece& path, double free_end,
                                          const PlanCursor& cursor, double tolerance_rad) noexcept;
-  [[nodiscard]] PathFault approach_by(const ToolPose& target, const Way& way, const Job& job,
-                                      PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] PathFault approach_by(const ToolPose& target, const Candidate& candidate,
+                                      const Job& job, PlanCursor& cursor, Staging& out) noexcept;
   /// Lifts a tool that is longer than the one that retract() led off the part as far as that was.
   [[nodiscard]] PathFault lift_longer_tool(const Job& rapid, PlanCursor& cursor,
                                            Staging& out) noexcept;
   /// Fills in what is known of the way once it is staged from `begin` on.
-  void describe_way_in(const Way& way, const Job& job, const PlanCursor& from,
-                       const Staging::Mark& begin, const Staging& staged) noexcept;
+  void describe_approach(const Candidate& candidate, const Job& job, const PlanCursor& from,
+                         const Staging::Mark& begin, const Staging& staged) noexcept;
   /// How far, up to `whole_mm`, the tool can leave `pose` along its axis inside travel and the tip
   /// box, and past every keep-out box; 0: not at all.
   [[nodiscard]] double find_clearance(const ToolPose& pose, const JointVector& joints,
@@ -239,9 +240,9 @@ class Router {
   std::span<const ClBlock> ahead_;
   PoleLookAhead* look_ahead_ = nullptr;
   bool needs_ahead_ = false;  ///< of the last route()
-  AheadSlack slack_;
+  LookAheadSlack slack_;
   std::optional<BlockReject> lost_;                   ///< of the last approach
-  Approach way_in_;                                   ///< of the last approach
+  Approach last_approach_;                            ///< of the last approach
   Approach retracted_;                                ///< what the last retract() was of it
   ToolPose left_{Vector3::Zero(), Vector3::UnitZ()};  ///< where the last retract() began
   double feed_factor_ = 1;

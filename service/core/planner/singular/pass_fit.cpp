@@ -152,16 +152,16 @@ double PassFit::inside_travel(int joint, double value) const noexcept {
                                       kTravelMargin);
 }
 
-bool PassFit::follow(const Stretch& way, JointVector& joints) const noexcept {
+bool PassFit::follow(const Stretch& stretch, JointVector& joints) const noexcept {
   constexpr int kSteps = 48;
   for (int k = 1; k <= kSteps; ++k) {
-    const double at = way.from + (way.to - way.from) * k / kSteps;
+    const double at = stretch.from + (stretch.to - stretch.from) * k / kSteps;
     const auto there = solve(task_.model, task_.tool_length_mm,
-                             pose_of<double>(task_.spans.span_at(at), at), way.branch, joints);
+                             pose_of<double>(task_.spans.span_at(at), at), stretch.branch, joints);
     if (there.status == SolveStatus::kUnreachable) return false;
     joints = there.q;
     const bool is_out = first_joint_outside_travel(task_.model, joints, kTravelMargin) >= 0;
-    if (way.keeps_travel && is_out) return false;
+    if (stretch.keeps_travel && is_out) return false;
   }
   return true;
 }

@@ -47,7 +47,7 @@ class PassFit {
     bool keeps_travel = false;
   };
   /// Follows the joints to its end; false: there are none there, or they leave travel.
-  [[nodiscard]] bool follow(const Stretch& way, JointVector& joints) const noexcept;
+  [[nodiscard]] bool follow(const Stretch& stretch, JointVector& joints) const noexcept;
 
   const PassTask& task_;
   const PassRange& range_;

@@ -119,11 +119,11 @@ void PoleCorridor::scan() noexcept {
     // Not before a span waits for it: searches are dear, and so no two come at once.
     if (may_emit() && !probes_.is_full()) return;
     PoleStretch stretch;
-    const PoleProbes::Place before = stretches_.place();
+    const PoleProbes::ProbeIndex before = stretches_.probe();
     const PoleStretches::Answer answer = stretches_.decide(stretch);
     if (answer == PoleStretches::Answer::kNeedsSpans) return;
     if (answer != PoleStretches::Answer::kFound) continue;
-    if (stretch.has_room && !foresee(stretch.place)) {
+    if (stretch.has_room && !foresee(stretch.pass)) {
       stretches_.go_back_to(before);
       search_ = Search::kNeedsAhead;
       return;
@@ -132,30 +132,30 @@ void PoleCorridor::scan() noexcept {
   }
 }
 
-void PoleCorridor::lead_to(PolePlace& place) const noexcept {
-  place.joints = place.at_begin == PoleJoin::kExact ? follow_to(place.begin) : known_;
+void PoleCorridor::lead_to(PolePass& pass) const noexcept {
+  pass.joints = pass.at_begin == PoleJoin::kExact ? follow_to(pass.begin) : known_;
 }
 
 std::span<const PoleZone> PoleCorridor::find_string(PoleStretch& stretch) noexcept {
   const PoleTask task{model_, probes_, programmed_, tool_length_mm_, tolerance_rad_, is_exact_};
-  PolePlace& place = stretch.place;
-  auto pieces = string_.find(task, place);
+  PolePass& pass = stretch.pass;
+  auto pieces = string_.find(task, pass);
   double reach = kPoleReach_mm;
   const auto is_found = [&] { return !pieces.empty() || string_.is_exact_best(); };
-  for (int n = 0; n < kShorter && !is_found() && !may_be_exact(place); ++n) {
+  for (int n = 0; n < kShorter && !is_found() && !may_be_exact(pass); ++n) {
     reach *= kShorterShare;
     if (!stretches_.shorten(stretch, reach)) continue;
-    lead_to(place);
-    pieces = string_.find(task, place);
+    lead_to(pass);
+    pieces = string_.find(task, pass);
   }
   return pieces;
 }
 
 void PoleCorridor::settle(PoleStretch& stretch) noexcept {
-  PolePlace& place = stretch.place;
-  lead_to(place);
-  place.rate = course_.rate;
-  place.is_on_pole = is_on_pole(stretch);
+  PolePass& pass = stretch.pass;
+  lead_to(pass);
+  pass.rate = course_.rate;
+  pass.is_on_pole = is_on_pole(stretch);
   const auto waiting = static_cast<std::size_t>(pending_.end_index() - pending_.begin_index());
   bool is_exact_best = false;
   if (stretch.has_room && waiting + FreeSpline::kPieces <= kPending) {
@@ -164,25 +164,25 @@ void PoleCorridor::settle(PoleStretch& stretch) noexcept {
     if (!pieces.empty()) return know_behind(pieces.back());
     is_exact_best = string_.is_exact_best();
   }
-  if (!is_exact_best && !may_be_exact(place)) {
+  if (!is_exact_best && !may_be_exact(pass)) {
     search_ = Search::kFailed;
     return;
   }
-  for (PoleProbes::Place n = stretch.first; n <= stretch.last; ++n) {
+  for (PoleProbes::ProbeIndex n = stretch.first; n <= stretch.last; ++n) {
     if (stretches_.is_minimum(n)) add_cuts(probes_.find_nearest(n));
   }
 }
 
 /// Whether the exact way leads along the stretch from where the redundant joint is at its begin.
-bool PoleCorridor::may_be_exact(const PolePlace& place) const noexcept {
-  if (place.is_on_pole || place.at_begin == PoleJoin::kHeld) return false;
-  return place.at_begin == PoleJoin::kExact || probes_.distance_at(place.begin) >= tolerance_rad_;
+bool PoleCorridor::may_be_exact(const PolePass& pass) const noexcept {
+  if (pass.is_on_pole || pass.at_begin == PoleJoin::kHeld) return false;
+  return pass.at_begin == PoleJoin::kExact || probes_.distance_at(pass.begin) >= tolerance_rad_;
 }
 
 /// Whether the path meets the pole on the stretch.
 bool PoleCorridor::is_on_pole(const PoleStretch& stretch) const noexcept {
   if (probes_.distance_at(stretch.nearest) < kPoleDeviation_rad) return true;
-  for (PoleProbes::Place n = stretch.first; n <= stretch.last; ++n) {
+  for (PoleProbes::ProbeIndex n = stretch.first; n <= stretch.last; ++n) {
     if (probes_.distance_of(n) < kPoleDeviation_rad) return true;
     const bool is_passed = stretches_.is_minimum(n) &&
                            probes_.distance_at(probes_.find_nearest(n)) < kPoleDeviation_rad;
@@ -248,10 +248,10 @@ void PoleCorridor::wind(double by, const JointVector& joints) noexcept {
 
 bool PoleCorridor::may_emit() const noexcept {
   if (!has_pole_) return true;
-  const PoleProbes::Place last = probes_.end_place() - 1, place = stretches_.place();
-  if (is_finished_ && place > last) return true;
+  const PoleProbes::ProbeIndex last = probes_.end_probe() - 1, probe = stretches_.probe();
+  if (is_finished_ && probe > last) return true;
   const BandSpan& front = probes_.front();
-  const double end = front.u0 + front.length, checked = probes_.u_of(std::min(place, last));
+  const double end = front.u0 + front.length, checked = probes_.u_of(std::min(probe, last));
   if (end > checked) return false;
   const bool is_out_of_reach =
       probes_.front_distance() > kOutOfReach_rad + front.length / kAxisLength_mm_per_rad;

@@ -107,16 +107,16 @@ class PoleCorridor {
   /// Looks for stretches as far as enough of what follows is there.
   void scan() noexcept;
   /// Finds out how far ways behind the stretch carry; false: blocks are missing.
-  [[nodiscard]] bool foresee(PolePlace& place) noexcept;
-  [[nodiscard]] bool returns_to_pole(const PolePlace& place) const noexcept;
-  void ask(const PolePlace& place) noexcept;
+  [[nodiscard]] bool foresee(PolePass& pass) noexcept;
+  [[nodiscard]] bool returns_to_pole(const PolePass& pass) const noexcept;
+  void ask(const PolePass& pass) noexcept;
   /// Drives the redundant joint along the stretch, or cuts the spans there.
   void settle(PoleStretch& stretch) noexcept;
   /// The way of the redundant joint along the stretch, empty: the exact one, or none was found.
   /// Where no exact way leads, shorter stretches are tried as well.
   [[nodiscard]] std::span<const PoleZone> find_string(PoleStretch& stretch) noexcept;
-  void lead_to(PolePlace& place) const noexcept;
-  [[nodiscard]] bool may_be_exact(const PolePlace& place) const noexcept;
+  void lead_to(PolePass& pass) const noexcept;
+  [[nodiscard]] bool may_be_exact(const PolePass& pass) const noexcept;
   [[nodiscard]] bool is_on_pole(const PoleStretch& stretch) const noexcept;
   void add_cuts(double nearest) noexcept;
   void add_cut(double u) noexcept;

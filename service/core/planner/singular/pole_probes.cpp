@@ -40,13 +40,13 @@ const BandSpan& PoleProbes::span_at(double u) const noexcept {
   return spans_[low].band;
 }
 
-double PoleProbes::u_of(Place place) const noexcept {
-  const BandSpan& span = spans_[place / kProbes].band;
-  return span.u0 + span.length * static_cast<double>(place % kProbes) / kProbes;
+double PoleProbes::u_of(ProbeIndex probe) const noexcept {
+  const BandSpan& span = spans_[probe / kProbes].band;
+  return span.u0 + span.length * static_cast<double>(probe % kProbes) / kProbes;
 }
 
-double PoleProbes::distance_of(Place place) const noexcept {
-  return spans_[place / kProbes].distance[static_cast<std::size_t>(place % kProbes)];
+double PoleProbes::distance_of(ProbeIndex probe) const noexcept {
+  return spans_[probe / kProbes].distance[static_cast<std::size_t>(probe % kProbes)];
 }
 
 double PoleProbes::distance_at(double u) const noexcept {
@@ -54,9 +54,9 @@ double PoleProbes::distance_at(double u) const noexcept {
   return pole_distance(model_, pose_on(span.c, std::clamp(u - span.u0, 0.0, span.length)).axis);
 }
 
-double PoleProbes::find_nearest(Place place) const noexcept {
-  double a = place > begin_place() ? u_of(place - 1) : u_of(place);
-  double b = place + 1 < end_place() ? u_of(place + 1) : end_u();
+double PoleProbes::find_nearest(ProbeIndex probe) const noexcept {
+  double a = probe > begin_probe() ? u_of(probe - 1) : u_of(probe);
+  double b = probe + 1 < end_probe() ? u_of(probe + 1) : end_u();
   for (int n = 0; n < 60; ++n) {
     const double x = a + 0.382 * (b - a), y = a + 0.618 * (b - a);
     if (distance_at(x) < distance_at(y)) {

@@ -16,7 +16,7 @@ class PoleProbes : public SpanLookup {
  public:
   static constexpr int kProbes = 6;  ///< per span
   /// A probe: span number times kProbes plus number on the span.
-  using Place = std::int64_t;
+  using ProbeIndex = std::int64_t;
 
   explicit PoleProbes(const MachineModel& model) : model_(model), spans_(kSpans) {}
 
@@ -35,14 +35,14 @@ class PoleProbes : public SpanLookup {
   [[nodiscard]] double end_u() const noexcept;
   [[nodiscard]] const BandSpan& span_at(double u) const noexcept override;
 
-  [[nodiscard]] Place begin_place() const noexcept { return spans_.begin_index() * kProbes; }
-  [[nodiscard]] Place end_place() const noexcept { return spans_.end_index() * kProbes; }
-  [[nodiscard]] double u_of(Place place) const noexcept;
+  [[nodiscard]] ProbeIndex begin_probe() const noexcept { return spans_.begin_index() * kProbes; }
+  [[nodiscard]] ProbeIndex end_probe() const noexcept { return spans_.end_index() * kProbes; }
+  [[nodiscard]] double u_of(ProbeIndex probe) const noexcept;
   /// Of the axis from the pole.
-  [[nodiscard]] double distance_of(Place place) const noexcept;
+  [[nodiscard]] double distance_of(ProbeIndex probe) const noexcept;
   [[nodiscard]] double distance_at(double u) const noexcept;
   /// Where the path is closest to the pole between the neighbours of `place`.
-  [[nodiscard]] double find_nearest(Place place) const noexcept;
+  [[nodiscard]] double find_nearest(ProbeIndex probe) const noexcept;
 
  private:
   static constexpr std::size_t kSpans = 4096;

@@ -24,44 +24,44 @@ constexpr double kSnapped_mm = 1e-4;
 void PoleStretches::begin(double tolerance_rad) noexcept {
   tolerance_rad_ = tolerance_rad;
   settled_ = {};
-  place_ = 0;
+  probe_ = 0;
   run_ = {};
 }
 
 void PoleStretches::begin_again() noexcept {
-  place_ = probes_.begin_place();
+  probe_ = probes_.begin_probe();
   run_ = {};
 }
 
-bool PoleStretches::ends_path(Place place) const noexcept {
-  return settled_.is_whole && place + 1 == probes_.end_place();
+bool PoleStretches::ends_path(ProbeIndex probe) const noexcept {
+  return settled_.is_whole && probe + 1 == probes_.end_probe();
 }
 
-bool PoleStretches::is_minimum(Place place) const noexcept {
-  const double here = probes_.distance_of(place);
-  if (!(here < kNear_rad) || place == probes_.begin_place()) return false;
-  const bool is_last = place + 1 == probes_.end_place();
+bool PoleStretches::is_minimum(ProbeIndex probe) const noexcept {
+  const double here = probes_.distance_of(probe);
+  if (!(here < kNear_rad) || probe == probes_.begin_probe()) return false;
+  const bool is_last = probe + 1 == probes_.end_probe();
   const double behind =
-      is_last ? probes_.distance_at(probes_.end_u()) : probes_.distance_of(place + 1);
-  return here <= probes_.distance_of(place - 1) && here < behind;
+      is_last ? probes_.distance_at(probes_.end_u()) : probes_.distance_of(probe + 1);
+  return here <= probes_.distance_of(probe - 1) && here < behind;
 }
 
-bool PoleStretches::is_close(Place place) const noexcept {
+bool PoleStretches::is_close(ProbeIndex probe) const noexcept {
   const double close = kZoneTolerances * tolerance_rad_;
-  if (probes_.distance_of(place) < close) return true;
-  if (ends_path(place) && probes_.distance_at(probes_.end_u()) < close) return true;
-  return is_minimum(place) && probes_.distance_at(probes_.find_nearest(place)) < close;
+  if (probes_.distance_of(probe) < close) return true;
+  if (ends_path(probe) && probes_.distance_at(probes_.end_u()) < close) return true;
+  return is_minimum(probe) && probes_.distance_at(probes_.find_nearest(probe)) < close;
 }
 
 bool PoleStretches::find_next(const SettledPath& settled) noexcept {
   settled_ = settled;
   if (probes_.is_empty()) return false;
-  place_ = std::max(place_, probes_.begin_place());
-  while (place_ < probes_.end_place() && probes_.u_of(place_) < settled.end) ++place_;
-  for (; place_ < probes_.end_place(); ++place_) {
-    const bool is_last = place_ + 1 == probes_.end_place();
+  probe_ = std::max(probe_, probes_.begin_probe());
+  while (probe_ < probes_.end_probe() && probes_.u_of(probe_) < settled.end) ++probe_;
+  for (; probe_ < probes_.end_probe(); ++probe_) {
+    const bool is_last = probe_ + 1 == probes_.end_probe();
     if (is_last && !settled.is_whole && !probes_.is_full()) return false;
-    if (settled.is_held || is_minimum(place_) || is_close(place_)) return true;
+    if (settled.is_held || is_minimum(probe_) || is_close(probe_)) return true;
   }
   return false;
 }
@@ -72,11 +72,11 @@ bool PoleStretches::is_known_behind(double u) const noexcept {
 
 /// Walks on along the stretch from the place: once, however often more of it comes.
 void PoleStretches::follow() noexcept {
-  if (run_.first != place_) run_ = {place_, place_, place_, false};
+  if (run_.first != probe_) run_ = {probe_, probe_, probe_, false};
   while (!run_.has_left) {
-    const Place next = run_.seen + 1;
+    const ProbeIndex next = run_.seen + 1;
     const bool is_known =
-        next + 1 < probes_.end_place() || (next + 1 == probes_.end_place() && settled_.is_whole);
+        next + 1 < probes_.end_probe() || (next + 1 == probes_.end_probe() && settled_.is_whole);
     if (!is_known) return;
     run_.seen = next;
     if (is_close(next)) {
@@ -87,18 +87,18 @@ void PoleStretches::follow() noexcept {
   }
 }
 
-double PoleStretches::nearest_about(Place place) const noexcept {
-  return is_minimum(place) ? probes_.find_nearest(place) : probes_.u_of(place);
+double PoleStretches::nearest_about(ProbeIndex probe) const noexcept {
+  return is_minimum(probe) ? probes_.find_nearest(probe) : probes_.u_of(probe);
 }
 
 /// Where a stretch from `begin`, whose end is not known yet, is closest to the pole of what lies
 /// well ahead of what is known.
-PoleStretches::Place PoleStretches::find_hold(double begin) const noexcept {
+PoleStretches::ProbeIndex PoleStretches::find_hold(double begin) const noexcept {
   const double length = probes_.u_of(run_.seen) - begin;
   const double ahead = std::min(kAhead_mm, kHalf * length);
   const double from = begin + kHalf * (length - ahead), to = begin + length - ahead;
-  Place best = -1;
-  for (Place n = run_.seen; n > run_.first && probes_.u_of(n) >= from; --n) {
+  ProbeIndex best = -1;
+  for (ProbeIndex n = run_.seen; n > run_.first && probes_.u_of(n) >= from; --n) {
     if (probes_.u_of(n) > to) continue;
     if (best < 0 || probes_.distance_of(n) < probes_.distance_of(best)) best = n;
   }
@@ -107,8 +107,8 @@ PoleStretches::Place PoleStretches::find_hold(double begin) const noexcept {
 
 double PoleStretches::find_room_behind(double core_end) const noexcept {
   const double room = std::min(kPoleReach_mm, kReachShare * (probes_.end_u() - core_end));
-  for (Place n = run_.last + 1;
-       n + 1 < probes_.end_place() && probes_.u_of(n) < core_end + 2 * kPoleReach_mm; ++n) {
+  for (ProbeIndex n = run_.last + 1;
+       n + 1 < probes_.end_probe() && probes_.u_of(n) < core_end + 2 * kPoleReach_mm; ++n) {
     if (n > run_.seen && is_close(n)) return std::min(room, kHalf * (probes_.u_of(n) - core_end));
   }
   return room;
@@ -122,92 +122,92 @@ double PoleStretches::snapped(double u) const noexcept {
   return std::abs(end - u) < kSnapped_mm ? end : u;
 }
 
-void PoleStretches::place_begin(PoleStretch& out, double core_begin) const noexcept {
-  PolePlace& place = out.place;
-  place.begin = settled_.end;
+void PoleStretches::set_begin(PoleStretch& out, double core_begin) const noexcept {
+  PolePass& pass = out.pass;
+  pass.begin = settled_.end;
   if (settled_.is_held) {
-    place.at_begin = PoleJoin::kHeld;
+    pass.at_begin = PoleJoin::kHeld;
     return;
   }
   if (!settled_.is_begun && core_begin < settled_.end + kPoleReach_mm) {
-    place.at_begin = PoleJoin::kRest;
+    pass.at_begin = PoleJoin::kRest;
     return;
   }
   const double reach = std::min(kPoleReach_mm, kReachShare * (core_begin - settled_.end));
-  place.begin = snapped(core_begin - reach);
+  pass.begin = snapped(core_begin - reach);
   out.has_room = out.has_room && reach > kMinReach_mm;
 }
 
 PoleStretches::Answer PoleStretches::decide(PoleStretch& out) noexcept {
-  if (!is_known_behind(probes_.u_of(std::max(place_ - 1, probes_.begin_place())))) {
+  if (!is_known_behind(probes_.u_of(std::max(probe_ - 1, probes_.begin_probe())))) {
     return Answer::kNeedsSpans;
   }
   out = {};
-  out.first = out.last = place_;
-  out.nearest = nearest_about(place_);
-  out.place.branch = settled_.branch;
-  if (!settled_.is_held && !is_close(place_)) {
-    ++place_;
+  out.first = out.last = probe_;
+  out.nearest = nearest_about(probe_);
+  out.pass.branch = settled_.branch;
+  if (!settled_.is_held && !is_close(probe_)) {
+    ++probe_;
     return out.nearest > settled_.end ? Answer::kFound : Answer::kPassed;
   }
   follow();
   const double core_begin =
-      settled_.is_held ? settled_.end : std::min(out.nearest, probes_.u_of(place_));
+      settled_.is_held ? settled_.end : std::min(out.nearest, probes_.u_of(probe_));
   out.has_room = true;
   out.close_begin = core_begin;
-  place_begin(out, core_begin);
-  PolePlace& place = out.place;
+  set_begin(out, core_begin);
+  PolePass& pass = out.pass;
   const bool is_open = !run_.has_left && !settled_.is_whole;
   if (is_open) {
     const double length = probes_.u_of(run_.seen) - core_begin;
     const bool is_waited_for = length < kLongStretch_mm && !probes_.is_full();
-    const Place hold = is_waited_for ? -1 : find_hold(place.begin);
+    const ProbeIndex hold = is_waited_for ? -1 : find_hold(pass.begin);
     if (is_waited_for) return Answer::kNeedsSpans;
     out.has_room = out.has_room && hold >= 0;
     out.last = hold >= 0 ? hold : run_.seen;
-    place.at_end = PoleJoin::kHeld;
-    place.end = probes_.u_of(out.last);
-    place.seen_end = probes_.u_of(run_.seen);
-    place.known_end = place.seen_end;
+    pass.at_end = PoleJoin::kHeld;
+    pass.end = probes_.u_of(out.last);
+    pass.seen_end = probes_.u_of(run_.seen);
+    pass.known_end = pass.seen_end;
   } else {
     out.last = run_.last;
     const double core_end = std::max(probes_.u_of(run_.last), nearest_about(run_.last));
     if (!is_known_behind(core_end)) return Answer::kNeedsSpans;
     out.close_end = core_end;
-    place_end(out, core_end);
+    set_end(out, core_end);
   }
-  place_ = out.last + 1;
-  const bool is_passed = place.at_begin == PoleJoin::kExact && core_begin <= settled_.end;
+  probe_ = out.last + 1;
+  const bool is_passed = pass.at_begin == PoleJoin::kExact && core_begin <= settled_.end;
   return is_passed ? Answer::kPassed : Answer::kFound;
 }
 
-void PoleStretches::place_end(PoleStretch& out, double core_end) const noexcept {
-  PolePlace& place = out.place;
-  place.known_end = std::min(probes_.end_u(), core_end + 2 * kPoleReach_mm);
+void PoleStretches::set_end(PoleStretch& out, double core_end) const noexcept {
+  PolePass& pass = out.pass;
+  pass.known_end = std::min(probes_.end_u(), core_end + 2 * kPoleReach_mm);
   const bool is_end =
-      ends_path(run_.last) || (settled_.is_whole && run_.seen + 1 == probes_.end_place());
+      ends_path(run_.last) || (settled_.is_whole && run_.seen + 1 == probes_.end_probe());
   const double end = probes_.distance_at(probes_.end_u());
   if (is_end && end < kStayTolerances * tolerance_rad_) {
-    place.at_end = PoleJoin::kRest;
-    place.end = probes_.end_u();
+    pass.at_end = PoleJoin::kRest;
+    pass.end = probes_.end_u();
     return;
   }
   const double room = find_room_behind(core_end);
-  place.end = snapped(core_end + room);
+  pass.end = snapped(core_end + room);
   out.has_room = out.has_room && room > kMinReach_mm;
 }
 
 bool PoleStretches::shorten(PoleStretch& stretch, double reach_mm) const noexcept {
-  PolePlace& place = stretch.place;
+  PolePass& pass = stretch.pass;
   const double begin = snapped(stretch.close_begin - reach_mm);
   const double end = snapped(stretch.close_end + reach_mm);
-  const bool begins_later = place.at_begin != PoleJoin::kHeld && begin > place.begin + kMinReach_mm;
-  const bool ends_earlier = place.at_end == PoleJoin::kExact && end < place.end - kMinReach_mm;
+  const bool begins_later = pass.at_begin != PoleJoin::kHeld && begin > pass.begin + kMinReach_mm;
+  const bool ends_earlier = pass.at_end == PoleJoin::kExact && end < pass.end - kMinReach_mm;
   if (begins_later) {
-    place.begin = begin;
-    place.at_begin = PoleJoin::kExact;
+    pass.begin = begin;
+    pass.at_begin = PoleJoin::kExact;
   }
-  if (ends_earlier) place.end = end;
+  if (ends_earlier) pass.end = end;
   return begins_later || ends_earlier;
 }
 

@@ -21,10 +21,10 @@ struct SettledPath {
 
 /// A stretch of path close to the pole.
 struct PoleStretch {
-  PolePlace place;                        ///< all but the joints
-  PoleProbes::Place first = 0, last = 0;  ///< of the path close to the pole
-  double nearest = 0;                     ///< u: where it comes closest first
-  double close_begin = 0, close_end = 0;  ///< u: between them the path is close to the pole
+  PolePass pass;                               ///< all but the joints
+  PoleProbes::ProbeIndex first = 0, last = 0;  ///< of the path close to the pole
+  double nearest = 0;                          ///< u: where it comes closest first
+  double close_begin = 0, close_end = 0;       ///< u: between them the path is close to the pole
   bool has_room = false;  ///< the redundant joint may go another way than the exact one there
 };
 
@@ -36,7 +36,7 @@ struct PoleStretch {
 /// What it says depends on spans alone. Units: mm, rad. Source: docs/motion.md, section 10.
 class PoleStretches {
  public:
-  using Place = PoleProbes::Place;
+  using ProbeIndex = PoleProbes::ProbeIndex;
 
   enum class Answer : std::uint8_t {
     kNeedsSpans,  ///< too little is known of what is behind: ask again
@@ -61,39 +61,39 @@ class PoleStretches {
   /// exact way leads there. False: it does not reach that far.
   [[nodiscard]] bool shorten(PoleStretch& stretch, double reach_mm) const noexcept;
   /// Takes the last answer back.
-  void go_back_to(Place place) noexcept { place_ = place; }
+  void go_back_to(ProbeIndex probe) noexcept { probe_ = probe; }
 
   /// All in front of this place is decided.
-  [[nodiscard]] Place place() const noexcept { return place_; }
+  [[nodiscard]] ProbeIndex probe() const noexcept { return probe_; }
   /// Whether the path is closest to the pole there of what is around.
-  [[nodiscard]] bool is_minimum(Place place) const noexcept;
+  [[nodiscard]] bool is_minimum(ProbeIndex probe) const noexcept;
 
  private:
   /// What is known of a stretch stays while spans behind it come.
   struct Run {
-    Place first = -1;       ///< where it was found
-    Place last = 0;         ///< of what is close
-    Place seen = 0;         ///< looked at as far as here
+    ProbeIndex first = -1;  ///< where it was found
+    ProbeIndex last = 0;    ///< of what is close
+    ProbeIndex seen = 0;    ///< looked at as far as here
     bool has_left = false;  ///< there is nothing close behind any more
   };
 
   /// Whether the path is so close to the pole there that it belongs to a stretch.
-  [[nodiscard]] bool is_close(Place place) const noexcept;
-  [[nodiscard]] bool ends_path(Place place) const noexcept;
+  [[nodiscard]] bool is_close(ProbeIndex probe) const noexcept;
+  [[nodiscard]] bool ends_path(ProbeIndex probe) const noexcept;
   /// Whether enough of the path behind `u` is known.
   [[nodiscard]] bool is_known_behind(double u) const noexcept;
-  [[nodiscard]] double nearest_about(Place place) const noexcept;
+  [[nodiscard]] double nearest_about(ProbeIndex probe) const noexcept;
   [[nodiscard]] double snapped(double u) const noexcept;
   void follow() noexcept;
-  [[nodiscard]] Place find_hold(double begin) const noexcept;
+  [[nodiscard]] ProbeIndex find_hold(double begin) const noexcept;
   [[nodiscard]] double find_room_behind(double core_end) const noexcept;
-  void place_begin(PoleStretch& out, double core_begin) const noexcept;
-  void place_end(PoleStretch& out, double core_end) const noexcept;
+  void set_begin(PoleStretch& out, double core_begin) const noexcept;
+  void set_end(PoleStretch& out, double core_end) const noexcept;
 
   const PoleProbes& probes_;
   double tolerance_rad_ = 0;
   SettledPath settled_;
-  Place place_ = 0;
+  ProbeIndex probe_ = 0;
   Run run_;
 };
 

@@ -34,16 +34,16 @@ double top_of(double left, double middle, double right) noexcept {
 PoleString::PoleString()
     : best_(FreeSpline::kPieces), trial_(FreeSpline::kPieces), values_(PoleWalls::kNodes) {}
 
-std::span<const PoleZone> PoleString::find(const PoleTask& task, const PolePlace& place) noexcept {
+std::span<const PoleZone> PoleString::find(const PoleTask& task, const PolePass& pass) noexcept {
   task_ = &task;
-  place_ = &place;
+  pass_ = &pass;
   free_ = redundant_joint(task.model);
   best_count_ = 0;
   best_time_ = kNoTime;
   walls_.loosen();
   for (round_ = 0; round_ < kWallRounds; ++round_) {
     is_any_off_ = false;
-    if (!walls_.look(task, place)) return {};
+    if (!walls_.look(task, pass)) return {};
     find_best();
     if (best_time_ < kNoTime) return {best_.data(), best_count_};
     if (!is_any_off_) return {};
@@ -58,8 +58,8 @@ void PoleString::find_best() noexcept {
   int below = std::numeric_limits<int>::max();
   for (std::size_t level = 0; level + 1 < kMaxLevels && best_time_ == kNoTime; ++level) {
     int blocks = 0;
-    for (const AheadWay& way : place_->ahead) {
-      if (way.carries < below) blocks = std::max(blocks, way.carries);
+    for (const RouteAhead& route : pass_->ahead) {
+      if (route.carries < below) blocks = std::max(blocks, route.carries);
     }
     if (blocks == 0) break;
     below = blocks;
@@ -74,7 +74,7 @@ bool PoleString::find_best(const Ahead& ahead) noexcept {
   const bool is_exact_kept = has_exact(ahead);
   if (is_exact_kept) best_time_ = exact_time() - kMinGain_s;
   int tried = 0;
-  for (const auto& course : walls_.find_courses(place_->joints[free_])) {
+  for (const auto& course : walls_.find_courses(pass_->joints[free_])) {
     if (!leads_on(course, ahead)) continue;
     try_course(course);
     if (++tried == kMaxCourses) break;
@@ -82,10 +82,10 @@ bool PoleString::find_best(const Ahead& ahead) noexcept {
   return is_exact_kept || tried > 0;
 }
 
-bool PoleString::carries(int branch, const WayBehind& way, int blocks) const noexcept {
-  if (blocks == 0 || !way.is_to_end) return true;
-  for (const AheadWay& ahead : place_->ahead) {
-    if (ahead.branch == branch && std::abs(ahead.free - way.free) < kSameWinding_rad) {
+bool PoleString::carries(int branch, const RouteAfter& route, int blocks) const noexcept {
+  if (blocks == 0 || !route.is_to_end) return true;
+  for (const RouteAhead& ahead : pass_->ahead) {
+    if (ahead.branch == branch && std::abs(ahead.free - route.free) < kSameWinding_rad) {
       return ahead.carries >= blocks;
     }
   }
@@ -93,27 +93,25 @@ bool PoleString::carries(int branch, const WayBehind& way, int blocks) const noe
 }
 
 bool PoleString::leads_on(const PoleWalls::Course& course, const Ahead& ahead) const noexcept {
-  if (!ahead.keeps_travel || place_->at_end != PoleJoin::kExact) return true;
-  JointVector joints = place_->joints;
+  if (!ahead.keeps_travel || pass_->at_end != PoleJoin::kExact) return true;
+  JointVector joints = pass_->joints;
   joints[free_] = PoleWalls::middle_of(walls_.nodes().back(), course.side);
   const int branch = course.side & 1;
-  const WayBehind way = follow_behind(*task_, *place_, place_->end, joints, branch);
-  return way.keeps_travel && carries(branch, way, ahead.blocks);
+  const RouteAfter route = follow_after(*task_, *pass_, pass_->end, joints, branch);
+  return route.keeps_travel && carries(branch, route, ahead.blocks);
 }
 
 bool PoleString::has_exact(const Ahead& ahead) const noexcept {
-  if (place_->is_on_pole || place_->at_begin == PoleJoin::kHeld ||
-      place_->at_end == PoleJoin::kHeld) {
+  if (pass_->is_on_pole || pass_->at_begin == PoleJoin::kHeld || pass_->at_end == PoleJoin::kHeld) {
     return false;
   }
   if (!ahead.keeps_travel) return true;
-  const WayBehind way =
-      follow_behind(*task_, *place_, place_->begin, place_->joints, place_->branch);
-  return way.keeps_travel && carries(place_->branch, way, ahead.blocks);
+  const RouteAfter route = follow_after(*task_, *pass_, pass_->begin, pass_->joints, pass_->branch);
+  return route.keeps_travel && carries(pass_->branch, route, ahead.blocks);
 }
 
 FreeEnd PoleString::exact_end(double u, int branch, double near) const noexcept {
-  JointVector reference = place_->joints;
+  JointVector reference = pass_->joints;
   reference[free_] = near;
   const auto at =
       solve(task_->model, task_->tool_length_mm, pose_of<Jet<2>>(*task_, u), branch, reference);
@@ -122,12 +120,12 @@ FreeEnd PoleString::exact_end(double u, int branch, double near) const noexcept 
 }
 
 FreeEnd PoleString::begin_of() const noexcept {
-  const double value = place_->joints[free_];
-  switch (place_->at_begin) {
+  const double value = pass_->joints[free_];
+  switch (pass_->at_begin) {
     case PoleJoin::kExact:
-      return exact_end(place_->begin, place_->branch, value);
+      return exact_end(pass_->begin, pass_->branch, value);
     case PoleJoin::kHeld:
-      return {{value, place_->rate, 0}, 3};
+      return {{value, pass_->rate, 0}, 3};
     case PoleJoin::kRest:
       break;
   }
@@ -138,19 +136,19 @@ FreeEnd PoleString::begin_of() const noexcept {
 std::size_t PoleString::node_count() const noexcept {
   const auto nodes = walls_.nodes();
   const auto behind = std::find_if(nodes.begin(), nodes.end(),
-                                   [this](const auto& node) { return node.u > place_->end; });
+                                   [this](const auto& node) { return node.u > pass_->end; });
   return static_cast<std::size_t>(behind - nodes.begin());
 }
 
 FreeEnd PoleString::end_of(const PoleWalls::Course& course,
                            std::span<const StringWindow> windows) noexcept {
   const auto nodes = walls_.nodes();
-  switch (place_->at_end) {
+  switch (pass_->at_end) {
     case PoleJoin::kExact:
-      return exact_end(place_->end, course.side & 1,
+      return exact_end(pass_->end, course.side & 1,
                        PoleWalls::middle_of(nodes.back(), course.side));
     case PoleJoin::kHeld: {  // where the string through all that is known is
-      pull_taut(windows, place_->joints[free_], {values_.data(), windows.size()});
+      pull_taut(windows, pass_->joints[free_], {values_.data(), windows.size()});
       const std::size_t at = node_count() - 1, next = std::min(at + 1, nodes.size() - 1);
       const double du = nodes[next].u - nodes[at].u;
       const double rate = du > 0 ? (values_[next] - values_[at]) / du : 0;
@@ -182,20 +180,20 @@ void PoleString::try_course(const PoleWalls::Course& course) noexcept {
 }
 
 void PoleString::take_pieces(const PoleWalls::Course& course) noexcept {
-  const bool is_exact = place_->at_end == PoleJoin::kExact;
-  const int after = is_exact ? course.side & 1 : place_->branch;
+  const bool is_exact = pass_->at_end == PoleJoin::kExact;
+  const int after = is_exact ? course.side & 1 : pass_->branch;
   trial_count_ = spline_.size();
   for (std::size_t n = 0; n < trial_count_; ++n) {
     PoleZone& piece = trial_[n];
     piece = spline_.piece(n);
-    piece.branch_before = piece.branch_after = place_->branch;
-    piece.is_through = after != place_->branch;
+    piece.branch_before = piece.branch_after = pass_->branch;
+    piece.is_through = after != pass_->branch;
   }
   trial_[0].is_first = true;
   PoleZone& last = trial_[trial_count_ - 1];
   last.branch_after = after;
   last.is_last = true;
-  last.is_held = place_->at_end == PoleJoin::kHeld;
+  last.is_held = pass_->at_end == PoleJoin::kHeld;
 }
 
 /// Angle to the programmed axis; infinite where a joint leaves travel.
@@ -241,7 +239,7 @@ bool PoleString::is_inside() noexcept {
 bool PoleString::is_inside_at_kinks() noexcept {
   if (task_->is_exact) return true;  // the smoothed axis counts, which has none
   std::array<double, 256> kinks;
-  const std::size_t count = task_->programmed.find_kinks(place_->begin, place_->end, kinks);
+  const std::size_t count = task_->programmed.find_kinks(pass_->begin, pass_->end, kinks);
   bool is_inside = true;
   std::size_t n = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -280,8 +278,7 @@ double PoleString::exact_time() const noexcept {
     const double u = 0.5 * (nodes[n - 1].u + nodes[n].u);
     const BandSpan& span = task_->spans.span_at(u);
     const auto pose = pose_of<Jet<3>>(span, u);
-    const auto at =
-        solve(task_->model, task_->tool_length_mm, pose, place_->branch, place_->joints);
+    const auto at = solve(task_->model, task_->tool_length_mm, pose, pass_->branch, pass_->joints);
     const double time = (nodes[n].u - nodes[n - 1].u) * slowness(task_->model, span, pose, at.q);
     sum += std::isfinite(time) ? time : 0;
   }

@@ -27,8 +27,7 @@ class PoleString {
 
   /// The pieces of the stretch, one behind the other; none: the exact way has it. Valid until the
   /// next call.
-  [[nodiscard]] std::span<const PoleZone> find(const PoleTask& task,
-                                               const PolePlace& place) noexcept;
+  [[nodiscard]] std::span<const PoleZone> find(const PoleTask& task, const PolePass& pass) noexcept;
   /// Whether there were no pieces because the exact way is the best.
   [[nodiscard]] bool is_exact_best() const noexcept;
 
@@ -44,7 +43,7 @@ class PoleString {
   /// All shapes along `course`; true where one of them is the best by now.
   void try_course(const PoleWalls::Course& course) noexcept;
   [[nodiscard]] bool leads_on(const PoleWalls::Course& course, const Ahead& ahead) const noexcept;
-  [[nodiscard]] bool carries(int branch, const WayBehind& way, int blocks) const noexcept;
+  [[nodiscard]] bool carries(int branch, const RouteAfter& route, int blocks) const noexcept;
   [[nodiscard]] bool has_exact(const Ahead& ahead) const noexcept;
   void find_best() noexcept;
   bool find_best(const Ahead& ahead) noexcept;
@@ -70,7 +69,7 @@ class PoleString {
   std::vector<double> values_;  ///< of a string over nodes
   double best_time_ = 0, deviation_rad_ = 0;
   const PoleTask* task_ = nullptr;
-  const PolePlace* place_ = nullptr;
+  const PolePass* pass_ = nullptr;
   int free_ = 0;
   int round_ = 0;            ///< of nearer walls
   bool is_any_off_ = false;  ///< some trial of the round left the tolerance

@@ -15,16 +15,16 @@ constexpr double kMaxStep_mm = 0.5;
 
 }  // namespace
 
-WayBehind follow_behind(const PoleTask& task, const PolePlace& place, double begin,
+RouteAfter follow_after(const PoleTask& task, const PolePass& pass, double begin,
                         const JointVector& joints, int branch) noexcept {
   const int free = redundant_joint(task.model);
   JointVector last = joints;
   double step = kMaxStep_mm;
-  for (double u = begin; u < place.known_end;) {
-    const double next = std::min(place.known_end, u + step);
+  for (double u = begin; u < pass.known_end;) {
+    const double next = std::min(pass.known_end, u + step);
     const BandSpan& span = task.spans.span_at(next);
     const ToolPose pose = pose_on(span.c, std::clamp(next - span.u0, 0.0, span.length));
-    const bool is_behind = next > place.end;
+    const bool is_behind = next > pass.end;
     if (is_behind && pole_distance(task.model, pose.axis) < kOtherTolerances * task.tolerance_rad) {
       return {true, false, last[free]};
     }

@@ -58,8 +58,9 @@ bool PoleWalls::see(double u, const Seen& before, Seen& out) const noexcept {
   out.u = u;
   out.tip = pose.tip;
   const double du = u - before.u;
-  const double way = (pose.tip - before.tip).norm();
-  out.t = before.t + std::max({way / span.feed_mm_per_s, du / span.u_speed_mm_per_s, kMinTime_s});
+  const double distance = (pose.tip - before.tip).norm();
+  out.t =
+      before.t + std::max({distance / span.feed_mm_per_s, du / span.u_speed_mm_per_s, kMinTime_s});
   out.x = pose.axis.dot(across_);
   out.y = pose.axis.dot(along_);
   out.px = out.x;
@@ -115,8 +116,8 @@ double PoleWalls::share_at(double u) const noexcept {
   return share;
 }
 
-bool PoleWalls::look(const PoleTask& task, const PolePlace& place) noexcept {
-  const double end = place.at_end == PoleJoin::kHeld ? place.seen_end : place.end;
+bool PoleWalls::look(const PoleTask& task, const PolePass& pass) noexcept {
+  const double end = pass.at_end == PoleJoin::kHeld ? pass.seen_end : pass.end;
   task_ = &task;
   free_ = redundant_joint(task.model);
   const auto& joint = task.model.joints[free_];
@@ -125,35 +126,35 @@ bool PoleWalls::look(const PoleTask& task, const PolePlace& place) noexcept {
   high_ = joint.is_endless ? kAny : joint.limits.travel_max;
   count_ = 0;
 
-  const ToolPose begin = pose_of<double>(task, place.begin);
+  const ToolPose begin = pose_of<double>(task, pass.begin);
   pole_ = find_nearest_pole(task.model, begin.axis);
   const Vector3 other = std::abs(pole_.x()) < 0.7 ? Vector3::UnitX() : Vector3::UnitY();
   across_ = (other - pole_ * pole_.dot(other)).normalized();
   along_ = pole_.cross(across_);
   const auto free_towards = [&](const Vector3& direction) {
     const ToolPose pose{begin.tip, (pole_ + kProbe_rad * direction).normalized()};
-    return solve(task.model, task.tool_length_mm, pose, 0, place.joints).q[free_];
+    return solve(task.model, task.tool_length_mm, pose, 0, pass.joints).q[free_];
   };
   const Vector3 turned = across_ + 0.1 * along_;
   const double by = free_towards(turned.normalized()) - free_towards(across_);
   turn_sign_ = std::remainder(by, 2 * kPi) < 0 ? -1 : 1;
 
   Seen last, next;
-  last.u = place.begin;
+  last.u = pass.begin;
   last.tip = begin.tip;
-  last.joints.fill(place.joints);
-  if (!see(place.begin, last, next)) return false;
-  next.node.is_pinned = place.at_begin == PoleJoin::kExact;
+  last.joints.fill(pass.joints);
+  if (!see(pass.begin, last, next)) return false;
+  next.node.is_pinned = pass.at_begin == PoleJoin::kExact;
   last = next;
   if (!add(last)) return false;
-  double step = kAny, block_end = place.begin;
+  double step = kAny, block_end = pass.begin;
   while (last.u < end) {
     const BandSpan& span = task.spans.span_at(last.u);
     const double whole = std::max(span.length / kNodesOfSpan, kMinStep_mm);
     step = std::min(2 * step, whole);
     if (last.u >= block_end) block_end = task.programmed.next_end(last.u + kMinBlock_mm);
     double stop = std::min(end, block_end);
-    if (last.u < place.end) stop = std::min(stop, place.end);
+    if (last.u < pass.end) stop = std::min(stop, pass.end);
     for (;; step *= 0.5) {
       const bool is_seen = see(std::min(last.u + step, stop), last, next);
       if (!is_seen && step <= kMinStep_mm) return false;
@@ -169,7 +170,7 @@ bool PoleWalls::look(const PoleTask& task, const PolePlace& place) noexcept {
     last = next;
     if (!add(last)) return false;
   }
-  if (count_ > 0) nodes_[count_ - 1].is_pinned = place.at_end == PoleJoin::kExact;
+  if (count_ > 0) nodes_[count_ - 1].is_pinned = pass.at_end == PoleJoin::kExact;
   return find_runs();
 }
 

@@ -54,7 +54,7 @@ class PoleWalls {
   bool tighten(double begin, double end, int round) noexcept;
 
   /// Looks along the stretch, as far as it is known. False: too long or too sharp to be followed.
-  [[nodiscard]] bool look(const PoleTask& task, const PolePlace& place) noexcept;
+  [[nodiscard]] bool look(const PoleTask& task, const PolePass& pass) noexcept;
 
   /// Finds the ways past all walls, of those that lead to the same side of the last the shortest;
   /// the shortest first. `value`: the redundant joint at the begin.

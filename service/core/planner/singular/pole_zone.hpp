@@ -7,7 +7,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/band_span.hpp"
 #include "service/core/planner/feed/joint_span.hpp"
-#include "service/core/planner/route/ahead_way.hpp"
+#include "service/core/planner/route/route_ahead.hpp"
 #include "service/core/planner/singular/programmed_axis.hpp"
 
 namespace meridian {
@@ -42,7 +42,7 @@ enum class PoleJoin : std::uint8_t {
 };
 
 /// A stretch of path close to the pole.
-struct PolePlace {
+struct PolePass {
   double begin = 0, end = 0;  ///< u
   PoleJoin at_begin = PoleJoin::kExact, at_end = PoleJoin::kExact;
   bool is_on_pole = false;  ///< it meets the pole: the exact way has no azimuth there
@@ -52,7 +52,7 @@ struct PolePlace {
   double seen_end = 0;      ///< where the stretch ends, as far as it is known: behind a kHeld end
   double known_end = 0;     ///< how far joints are to keep travel as well
   /// How far branches and windings at known_end carry; empty: all alike, or it is not known.
-  std::span<const AheadWay> ahead{};
+  std::span<const RouteAhead> ahead{};
 };
 
 /// What stays the same along a path.

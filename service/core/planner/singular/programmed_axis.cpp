@@ -52,8 +52,8 @@ std::optional<ProgrammedAxis::Known> ProgrammedAxis::at(double u) const noexcept
   const Mark &a = mark(before), &b = mark(before + 1);
   const Vector3 from = to_vector(a.axis), to = to_vector(b.axis);
   const double share = b.u > a.u ? std::clamp((u - a.u) / (b.u - a.u), 0.0, 1.0) : 0.0;
-  const GreatCircle way = find_great_circle(from, to);
-  return Known{axis_on_circle(way.begin, way.normal, share * way.turn), b.hidden_rad};
+  const GreatCircle circle = find_great_circle(from, to);
+  return Known{axis_on_circle(circle.begin, circle.normal, share * circle.turn), b.hidden_rad};
 }
 
 double ProgrammedAxis::angle_to(double u, const Vector3& axis) const noexcept {

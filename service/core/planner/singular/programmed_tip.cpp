@@ -7,7 +7,7 @@
 namespace meridian {
 namespace {
 
-constexpr double kSamePlace_mm = 1e-9;  // of u
+constexpr double kSamePosition_mm = 1e-9;  // of u
 
 }  // namespace
 
@@ -23,8 +23,8 @@ void ProgrammedTip::add(double u, const Vector3& tip) noexcept {
 }
 
 double ProgrammedTip::distance_to(double u, const Vector3& tip) const noexcept {
-  const bool is_known = last_ - first_ >= 2 && u >= mark(first_).u - kSamePlace_mm &&
-                        u <= mark(last_ - 1).u + kSamePlace_mm;
+  const bool is_known = last_ - first_ >= 2 && u >= mark(first_).u - kSamePosition_mm &&
+                        u <= mark(last_ - 1).u + kSamePosition_mm;
   if (!is_known) return std::numeric_limits<double>::infinity();
   std::int64_t low = first_, high = last_ - 1;
   while (high - low > 1) {

@@ -35,16 +35,16 @@ struct Asked {
   void push(std::uint64_t first, std::uint64_t end, double step_rad = 0.1) {
     for (std::uint64_t n = first; n < end; ++n) window.push(round(n, step_rad));
   }
-  void ask(std::uint64_t sequence = 0, bool is_on_its_way = false, double step_rad = 0.1) {
+  void ask(std::uint64_t sequence = 0, bool is_on_path = false, double step_rad = 0.1) {
     const ClBlock at = round(sequence, step_rad);
     start.sequence = sequence;
-    start.is_on_its_way = is_on_its_way;
+    start.is_on_path = is_on_path;
     start.pose = {to_vector(at.tip_mm), to_vector(at.axis)};
     start.tool_length_mm = model.tool_length_mm;
     const JointVector q = solve(model, model.tool_length_mm, start.pose, 0, {}).q;
     const double low = q[3] > 0 ? q[3] - 2 * std::numbers::pi : q[3];
-    ways = {AheadWay{0, low}, AheadWay{0, low + 2 * std::numbers::pi}};
-    window.ask(start, ways);
+    routes = {RouteAhead{0, low}, RouteAhead{0, low + 2 * std::numbers::pi}};
+    window.ask(start, routes);
   }
 
   static MachineModel machine() {
@@ -56,7 +56,7 @@ struct Asked {
   MachineModel model = machine();
   BlockWindow window;
   PoleLookAhead::Start start;
-  std::array<AheadWay, 2> ways;
+  std::array<RouteAhead, 2> routes;
 };
 
 TEST(BlockWindow, HandsBlocksOutInTheirOrder) {
@@ -88,9 +88,9 @@ TEST(BlockWindow, AnswersOnceOnlyOneWayGoesOn) {
   asked.push(5, 90);
   EXPECT_TRUE(asked.window.look());
   EXPECT_FALSE(asked.window.is_missing());
-  const auto ways = asked.window.ways();
-  ASSERT_EQ(ways.size(), 2U);
-  EXPECT_NE(ways[0].carries, ways[1].carries);
+  const auto routes = asked.window.routes();
+  ASSERT_EQ(routes.size(), 2U);
+  EXPECT_NE(routes[0].carries, routes[1].carries);
   EXPECT_FALSE(asked.window.is_cut_short()) << "it is settled";
 }
 
@@ -107,7 +107,7 @@ TEST(BlockWindow, AnswersWhereNoBlockComesAnyMore) {
   EXPECT_FALSE(asked.window.look());
   asked.window.end();
   EXPECT_TRUE(asked.window.look());
-  EXPECT_EQ(asked.window.ways()[0].carries, 4) << "those behind block 0";
+  EXPECT_EQ(asked.window.routes()[0].carries, 4) << "those behind block 0";
   EXPECT_FALSE(asked.window.is_cut_short()) << "the program is at its end";
 }
 
@@ -121,22 +121,22 @@ TEST(BlockWindow, AnswersWhateverHasBeenPlannedMeanwhile) {
   other.ask(20);
   EXPECT_TRUE(other.window.look());
   for (int n = 0; n < 2; ++n) {
-    EXPECT_EQ(one.window.ways()[n].carries, other.window.ways()[n].carries);
+    EXPECT_EQ(one.window.routes()[n].carries, other.window.routes()[n].carries);
   }
 }
 
 TEST(BlockWindow, BeginsOnTheWayOfABlockWithItself) {
-  Asked at_end, on_its_way;
+  Asked at_end, on_path;
   at_end.push(0, 30, 0);
   at_end.ask(10, false, 0);
   at_end.window.end();
   EXPECT_TRUE(at_end.window.look());
-  on_its_way.push(0, 30, 0);
-  on_its_way.ask(10, true, 0);
-  on_its_way.window.end();
-  EXPECT_TRUE(on_its_way.window.look());
-  EXPECT_EQ(at_end.window.ways()[0].carries, 19);
-  EXPECT_EQ(on_its_way.window.ways()[0].carries, 20);
+  on_path.push(0, 30, 0);
+  on_path.ask(10, true, 0);
+  on_path.window.end();
+  EXPECT_TRUE(on_path.window.look());
+  EXPECT_EQ(at_end.window.routes()[0].carries, 19);
+  EXPECT_EQ(on_path.window.routes()[0].carries, 20);
 }
 
 TEST(BlockWindow, LooksNoFartherThanItHasRoomFor) {
@@ -144,7 +144,7 @@ TEST(BlockWindow, LooksNoFartherThanItHasRoomFor) {
   asked.push(0, BlockWindow::kWaiting, 0);
   asked.ask(0, false, 0);
   EXPECT_TRUE(asked.window.look());
-  EXPECT_EQ(asked.window.ways()[0].carries, static_cast<int>(BlockWindow::kWaiting) - 1);
+  EXPECT_EQ(asked.window.routes()[0].carries, static_cast<int>(BlockWindow::kWaiting) - 1);
   EXPECT_TRUE(asked.window.is_cut_short());
 }
 
@@ -164,7 +164,7 @@ TEST(BlockWindow, ReportsALookThatWasCutShortAndAnswersItAgainTheSame) {
   asked.push(11, 90);
   asked.ask(3);
   EXPECT_TRUE(asked.window.look());
-  EXPECT_EQ(asked.window.ways()[0].carries, 7);
+  EXPECT_EQ(asked.window.routes()[0].carries, 7);
 }
 
 TEST(BlockWindow, ReplaysLooksThatWereCutShort) {
@@ -175,13 +175,13 @@ TEST(BlockWindow, ReplaysLooksThatWereCutShort) {
   asked.push(0, 90);
   asked.ask(3);
   EXPECT_TRUE(asked.window.look());
-  EXPECT_EQ(asked.window.ways()[0].carries, 7);
+  EXPECT_EQ(asked.window.routes()[0].carries, 7);
   asked.ask(5);
   EXPECT_TRUE(asked.window.look());
-  EXPECT_EQ(asked.window.ways()[0].carries, 1);
+  EXPECT_EQ(asked.window.routes()[0].carries, 1);
   asked.ask(3, true);
   EXPECT_TRUE(asked.window.look());
-  EXPECT_EQ(asked.window.ways()[0].carries, 8);
+  EXPECT_EQ(asked.window.routes()[0].carries, 8);
 }
 
 /// Of an arc that a way starts on, what is left is followed.
@@ -198,13 +198,13 @@ TEST(BlockWindow, FollowsTheRestOfAnArc) {
     asked.ask(10, true, 0);
     const double angle = is_behind ? 1.6 : 0.5;
     asked.start.pose.tip = {20 * std::cos(angle), 20 * std::sin(angle), 0};
-    asked.window.ask(asked.start, asked.ways);
+    asked.window.ask(asked.start, asked.routes);
     asked.window.end();
     EXPECT_TRUE(asked.window.look());
-    EXPECT_EQ(asked.window.ways()[0].carries, 1);
+    EXPECT_EQ(asked.window.routes()[0].carries, 1);
     const double left_mm =
         is_behind ? 20 * 2 * std::sin(0.0146) : 20 * (std::numbers::pi / 2 - 0.5);
-    EXPECT_NEAR(asked.window.ways()[0].time_s, left_mm / 50, 0.02);
+    EXPECT_NEAR(asked.window.routes()[0].time_s, left_mm / 50, 0.02);
   }
 }
 

@@ -44,21 +44,21 @@ TEST(Approach, IsDescribed) {
   Approached one(lai_machine());
   const ClBlock block = cut({80, 20, 10}, tilted(0.2, 2));
   ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
-  const Approach& way = one.router.way_in();
-  EXPECT_TRUE(way.is_planned);
-  EXPECT_FALSE(way.has_rest);
-  EXPECT_EQ(way.epoch, 3);
-  EXPECT_EQ(way.sequence, 7U);
-  EXPECT_EQ(way.line, 107U);
-  EXPECT_EQ(way.from, one.start);
-  for (int i = 0; i < 5; ++i) EXPECT_NEAR(way.to[i], one.cursor.joints[i], 1e-9);
-  EXPECT_NEAR(way.retract, 50, kRounding);
-  EXPECT_NEAR(way.descent, 50, kRounding);
-  EXPECT_EQ(way.lift, 0);
-  EXPECT_NEAR(way.length, one.length(), kRounding);
-  EXPECT_NEAR(way.time, duration_of(*one.staged), kRounding);
-  const auto on_branch = solve(one.model, 110, one.cursor.pose, way.branch, way.to);
-  for (int i = 0; i < 5; ++i) EXPECT_NEAR(on_branch.q[i], way.to[i], 1e-9);
+  const Approach& planned = one.router.last_approach();
+  EXPECT_TRUE(planned.is_planned);
+  EXPECT_FALSE(planned.has_rest);
+  EXPECT_EQ(planned.epoch, 3);
+  EXPECT_EQ(planned.sequence, 7U);
+  EXPECT_EQ(planned.line, 107U);
+  EXPECT_EQ(planned.from, one.start);
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(planned.to[i], one.cursor.joints[i], 1e-9);
+  EXPECT_NEAR(planned.retract, 50, kRounding);
+  EXPECT_NEAR(planned.descent, 50, kRounding);
+  EXPECT_EQ(planned.lift, 0);
+  EXPECT_NEAR(planned.length, one.length(), kRounding);
+  EXPECT_NEAR(planned.time, duration_of(*one.staged), kRounding);
+  const auto on_branch = solve(one.model, 110, one.cursor.pose, planned.branch, planned.to);
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(on_branch.q[i], planned.to[i], 1e-9);
 }
 
 TEST(Approach, MovesTheJointsAloneWhereItIsNearby) {
@@ -67,8 +67,8 @@ TEST(Approach, MovesTheJointsAloneWhereItIsNearby) {
   ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
   ASSERT_EQ(one.paths().size(), 1U);
   EXPECT_EQ(one.paths()[0].kind, PathKind::kJoint);
-  EXPECT_EQ(one.router.way_in().retract, 0);
-  EXPECT_EQ(one.router.way_in().descent, 0);
+  EXPECT_EQ(one.router.last_approach().retract, 0);
+  EXPECT_EQ(one.router.last_approach().descent, 0);
 }
 
 TEST(Approach, RetractsAsFarAsTravelAllows) {
@@ -122,14 +122,14 @@ TEST(Approach, GoesOnFromWhereTheToolWasRetracted) {
   ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
   ASSERT_EQ(one.paths().size(), 3U) << "up once";
   EXPECT_EQ(one.paths()[1].kind, PathKind::kJoint);
-  const Approach& way = one.router.way_in();
-  EXPECT_TRUE(way.has_rest);
-  EXPECT_EQ(way.from, one.start);
-  EXPECT_NEAR(way.retract, 50, kRounding);
-  EXPECT_EQ(way.lift, 0);
-  EXPECT_NEAR(way.length, one.length(), kRounding);
-  EXPECT_NEAR(way.time, duration_of(*one.staged), kRounding);
-  EXPECT_GT(way.time, up_s);
+  const Approach& planned = one.router.last_approach();
+  EXPECT_TRUE(planned.has_rest);
+  EXPECT_EQ(planned.from, one.start);
+  EXPECT_NEAR(planned.retract, 50, kRounding);
+  EXPECT_EQ(planned.lift, 0);
+  EXPECT_NEAR(planned.length, one.length(), kRounding);
+  EXPECT_NEAR(planned.time, duration_of(*one.staged), kRounding);
+  EXPECT_GT(planned.time, up_s);
 }
 
 TEST(Approach, LiftsAToolThatIsLongerAsFarAsTheOther) {
@@ -141,7 +141,7 @@ TEST(Approach, LiftsAToolThatIsLongerAsFarAsTheOther) {
   ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
   ASSERT_EQ(one.paths().size(), 4U);
   EXPECT_NEAR((to_vector(one.paths()[1].tip_delta) - 30 * tilted(0.3, 0.4)).norm(), 0, 1e-6);
-  EXPECT_NEAR(one.router.way_in().lift, 30, 1e-6);
+  EXPECT_NEAR(one.router.last_approach().lift, 30, 1e-6);
   EXPECT_LT(one.away_from(block), kRounding);
 }
 
@@ -173,7 +173,7 @@ TEST(Approach, GoesToJointsThatAreKnownStraight) {
   EXPECT_EQ(one.paths()[0].kind, PathKind::kJoint);
   EXPECT_EQ(one.cursor.joints, to);
   EXPECT_NEAR((one.cursor.pose.tip - forward(one.model, 110, to).tip).norm(), 0, kRounding);
-  EXPECT_NEAR(one.router.way_in().length, one.paths()[0].length, kRounding);
+  EXPECT_NEAR(one.router.last_approach().length, one.paths()[0].length, kRounding);
   double most = 0;
   for (int n = 0; n < one.staged->time_count; ++n) {
     most = std::max(most, one.staged->times[n].v);
@@ -192,7 +192,7 @@ TEST(Approach, TakesTheBranchAndWindingThatIsNearest) {
     Approached one(lai_machine(), {{0, 0, 0}, tilted(0.3, 0.4)}, branch);
     const ClBlock block = cut({80, 20, 10}, tilted(0.3, 0.6));
     ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
-    EXPECT_EQ(one.router.way_in().branch, branch);
+    EXPECT_EQ(one.router.last_approach().branch, branch);
     EXPECT_NEAR(std::abs(one.cursor.joints[3] - one.start[3]), 0.2, 0.01);
   }
 }
@@ -224,7 +224,7 @@ TEST(Approach, TakesTheWayThatTheBlocksBehindItAllow) {
   one.router.look_at(blocks, {});
   ASSERT_FALSE(is_fault(one.router.approach(blocks[0], one.cursor, *one.staged)));
   JointVector q = one.cursor.joints;
-  const int branch = one.router.way_in().branch;
+  const int branch = one.router.last_approach().branch;
   for (const ClBlock& block : blocks) {
     q = solve(model, 110, ToolPose{to_vector(block.tip_mm), to_vector(block.axis)}, branch, q).q;
     EXPECT_LE(std::abs(q[3]), units::rad_from_deg(200)) << block.sequence;

@@ -22,7 +22,7 @@ using approach::cut;
 
 /// A look ahead that answers what a test says, and remembers what it was asked.
 struct Answers : PoleLookAhead {
-  void ask(const Start& start, std::span<const AheadWay> ways) noexcept override {
+  void ask(const Start& start, std::span<const RouteAhead> ways) noexcept override {
     asked = start;
     asked_ways.assign(ways.begin(), ways.end());
     found = asked_ways;
@@ -32,10 +32,10 @@ struct Answers : PoleLookAhead {
     }
   }
   [[nodiscard]] bool look() noexcept override { return is_known; }
-  [[nodiscard]] std::span<const AheadWay> ways() const noexcept override { return found; }
+  [[nodiscard]] std::span<const RouteAhead> routes() const noexcept override { return found; }
   [[nodiscard]] bool is_cut_short() const noexcept override { return is_short; }
   Start asked;
-  std::vector<AheadWay> asked_ways, found;
+  std::vector<RouteAhead> asked_ways, found;
   bool is_known = true, is_short = false;
   double carries_below = -1e9;
 };
@@ -158,23 +158,23 @@ TEST(Rewinds, AskForTheBlocksFromWhereTheToolIs) {
   const ClBlock line = cut({5, 0, 0}, tilted(0.3, 0.5));
   (void)with.find(line);
   EXPECT_EQ(with.answers.asked.sequence, line.sequence);
-  EXPECT_TRUE(with.answers.asked.is_on_its_way);
+  EXPECT_TRUE(with.answers.asked.is_on_path);
   EXPECT_EQ(with.answers.asked.pose.tip, with.one.cursor.pose.tip);
   EXPECT_EQ(with.answers.asked.tool_length_mm, with.one.cursor.tool_length_mm);
   ClBlock arc = line;
   arc.is_arc = true;
   (void)with.find(arc);
   EXPECT_EQ(with.answers.asked.sequence, arc.sequence - 1) << "the whole arc";
-  EXPECT_FALSE(with.answers.asked.is_on_its_way);
+  EXPECT_FALSE(with.answers.asked.is_on_path);
   with.cause.is_in_block = true;
   (void)with.find(arc);
   EXPECT_EQ(with.answers.asked.sequence, arc.sequence);
-  EXPECT_TRUE(with.answers.asked.is_on_its_way);
+  EXPECT_TRUE(with.answers.asked.is_on_path);
   with.cause.is_in_block = false;
   arc.sequence = 0;
   (void)with.find(arc);
   EXPECT_EQ(with.answers.asked.sequence, 0U);
-  EXPECT_TRUE(with.answers.asked.is_on_its_way) << "there is no block before the first";
+  EXPECT_TRUE(with.answers.asked.is_on_path) << "there is no block before the first";
 }
 
 TEST(Rewinds, SayWhetherTheyWaitForBlocks) {

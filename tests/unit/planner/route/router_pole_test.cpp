@@ -36,12 +36,12 @@ TEST(Router, TurnsTheRedundantJointOnThePoleAndThenLeavesIt) {
   ASSERT_FALSE(is_fault(one.route(block)));
   one.expect_joined(on_pole);
   ASSERT_EQ(one.paths().size(), 2U);
-  const PathPiece turn = one.paths()[0], way = one.paths()[1];
+  const PathPiece turn = one.paths()[0], answer = one.paths()[1];
   EXPECT_EQ(turn.kind, PathKind::kTurn);
   EXPECT_EQ(turn.motion, MotionKind::kPoleTurn);
   EXPECT_NEAR(std::abs(turn.free_end - turn.free_begin), 1.2, kRounding) << "the shorter way";
-  EXPECT_TRUE(way.is_free_driven);
-  EXPECT_EQ(way.free_begin, way.free_end);
+  EXPECT_TRUE(answer.is_free_driven);
+  EXPECT_EQ(answer.free_begin, answer.free_end);
   EXPECT_LT(one.away_from(block), kRounding);
   EXPECT_LE(tip_speed_of(*one.staged), 50);
 }
@@ -166,18 +166,18 @@ TEST(Router, TurnsToAnotherBranchInsideTheFreeCone) {
 
 /// One that answers what a test says.
 struct Answers : PoleLookAhead {
-  void ask(const Start& start, std::span<const AheadWay> ways) noexcept override {
+  void ask(const Start& start, std::span<const RouteAhead> routes) noexcept override {
     asked = start;
-    found.assign(ways.begin(), ways.end());
-    for (AheadWay& way : found) {
-      if ((way.free > 0) == prefers_positive) way.carries = 5;
+    found.assign(routes.begin(), routes.end());
+    for (RouteAhead& answer : found) {
+      if ((answer.free > 0) == prefers_positive) answer.carries = 5;
     }
   }
   [[nodiscard]] bool look() noexcept override { return is_known; }
-  [[nodiscard]] std::span<const AheadWay> ways() const noexcept override { return found; }
+  [[nodiscard]] std::span<const RouteAhead> routes() const noexcept override { return found; }
   [[nodiscard]] bool is_cut_short() const noexcept override { return false; }
   Start asked;
-  std::vector<AheadWay> found;
+  std::vector<RouteAhead> found;
   bool is_known = true, prefers_positive = true;
 };
 
@@ -191,7 +191,7 @@ TEST(Router, LeavesThePoleByTheWayThatCarriesFarthest) {
     ASSERT_FALSE(is_fault(one.route(cut({40, 0, 0}, Vector3::UnitZ()))));
     ASSERT_FALSE(is_fault(one.route(cut({60, 0, 0}, tilted(0.3, 1.2)))));
     EXPECT_EQ(answers.asked.sequence, 7U);
-    EXPECT_FALSE(answers.asked.is_on_its_way);
+    EXPECT_FALSE(answers.asked.is_on_path);
     EXPECT_EQ(one.cursor.joints[3] > 0, prefers_positive);
     EXPECT_FALSE(one.router.needs_ahead());
     EXPECT_GT(answers.found.size(), 2U) << "both branches and several windings";

@@ -94,7 +94,7 @@ inline void expect_whole(const Handed& handed) {
 }
 
 /// How the joints follow what came out.
-struct Way {
+struct FollowedPath {
   double turn = 0;          ///< of the redundant joint, all of it
   double farthest_rad = 0;  ///< of the axis from the path
   double jump = 0;          ///< of a joint between two spans
@@ -102,8 +102,9 @@ struct Way {
   JointVector end{};
 };
 
-inline Way follow(const MachineModel& model, JointVector q, std::span<const JointSpan> spans) {
-  Way way;
+inline FollowedPath follow(const MachineModel& model, JointVector q,
+                           std::span<const JointSpan> spans) {
+  FollowedPath followed;
   Joints<Jet<2>> last{};
   double most_d1 = 1e-3, jump_d1 = 0;
   bool is_first = true;
@@ -116,8 +117,8 @@ inline Way follow(const MachineModel& model, JointVector q, std::span<const Join
       EXPECT_NE(at.status, SolveStatus::kUnreachable);
       for (int i = 0; i < 5; ++i) {
         const double by = value_of(at.q[i]) - q[i];
-        if (k == 0) way.jump = std::max(way.jump, std::abs(by));
-        if (i == 3) way.turn += std::abs(by);
+        if (k == 0) followed.jump = std::max(followed.jump, std::abs(by));
+        if (i == 3) followed.turn += std::abs(by);
         EXPECT_LT(std::abs(by), i < 3 ? 40 : 0.6) << "u " << span.band.u0 + x << " joint " << i;
         most_d1 = std::max(most_d1, std::abs(at.q[i].derivative(1)));
         if (k == 0 && i == 3 && !is_first) {
@@ -128,16 +129,16 @@ inline Way follow(const MachineModel& model, JointVector q, std::span<const Join
       last = at.q;
       is_first = false;
       const Vector3 axis = forward(model, kTool_mm, q).axis;
-      way.farthest_rad =
-          std::max(way.farthest_rad, angle_between(axis, pose_on(span.band.c, x).axis));
+      followed.farthest_rad =
+          std::max(followed.farthest_rad, angle_between(axis, pose_on(span.band.c, x).axis));
     }
   }
-  way.jump_d1 = jump_d1 / most_d1;
-  way.end = q;
-  return way;
+  followed.jump_d1 = jump_d1 / most_d1;
+  followed.end = q;
+  return followed;
 }
 
-inline Way follow(const Handed& handed) {
+inline FollowedPath follow(const Handed& handed) {
   return follow(handed.model, handed.start.joints, handed.out);
 }
 

@@ -42,11 +42,11 @@ TEST(PoleCorridor, GoesAShorterWayInsideTheTolerance) {
   handed.run();
   expect_whole(handed);
   ASSERT_TRUE(handed.is_driven());
-  const Way way = follow(handed);
-  EXPECT_LT(way.turn, 1) << "the exact way is half a turn";
-  EXPECT_LE(way.farthest_rad, kTolerance_rad);
-  EXPECT_LT(way.jump, 1e-7);
-  EXPECT_LT(way.jump_d1, 1e-5);
+  const FollowedPath followed = follow(handed);
+  EXPECT_LT(followed.turn, 1) << "the exact way is half a turn";
+  EXPECT_LE(followed.farthest_rad, kTolerance_rad);
+  EXPECT_LT(followed.jump, 1e-7);
+  EXPECT_LT(followed.jump_d1, 1e-5);
   double reported = 0;
   for (const JointSpan& span : handed.out) {
     if (!span.is_free_driven) continue;
@@ -55,7 +55,7 @@ TEST(PoleCorridor, GoesAShorterWayInsideTheTolerance) {
     EXPECT_GT(span.band.u0, 60 - 40);
     EXPECT_LT(span.band.u0, 60 + 40);
   }
-  EXPECT_GE(reported, way.farthest_rad * (1 - 1e-3));
+  EXPECT_GE(reported, followed.farthest_rad * (1 - 1e-3));
   EXPECT_LE(reported, kTolerance_rad);
   EXPECT_NE(handed.out.back().branch, handed.out.front().branch) << "out on the other branch";
 }
@@ -65,10 +65,10 @@ TEST(PoleCorridor, FollowsThePathOnItsBranchBesideAPoleThatIsFarther) {
     Handed handed(bench_machine(), leaning_path(120, passing(0.006)), branch);
     handed.run();
     expect_whole(handed);
-    const Way way = follow(handed);
-    EXPECT_LE(way.farthest_rad, kTolerance_rad);
-    EXPECT_LT(way.jump, 1e-6);
-    EXPECT_GT(way.turn, 2.5);
+    const FollowedPath followed = follow(handed);
+    EXPECT_LE(followed.farthest_rad, kTolerance_rad);
+    EXPECT_LT(followed.jump, 1e-6);
+    EXPECT_GT(followed.turn, 2.5);
     EXPECT_EQ(handed.out.back().branch, branch);
   }
 }
@@ -90,9 +90,9 @@ TEST(PoleCorridor, CutsSpansAboutTheNearestPointWhereTheWayIsExact) {
       EXPECT_NEAR(span.band.length, 1, 1e-9);
     }
   }
-  const Way way = follow(handed);
-  EXPECT_NEAR(way.turn, std::numbers::pi, 0.02);
-  EXPECT_LT(way.farthest_rad, 1e-9);
+  const FollowedPath followed = follow(handed);
+  EXPECT_NEAR(followed.turn, std::numbers::pi, 0.02);
+  EXPECT_LT(followed.farthest_rad, 1e-9);
 }
 
 TEST(PoleCorridor, GivesTheSameHoweverTheSpansCome) {
@@ -117,9 +117,9 @@ TEST(PoleCorridor, ComesToRestOnThePole) {
   Handed handed(bench_machine(), leaning_path(60, lean));
   handed.run();
   expect_whole(handed);
-  const Way way = follow(handed);
-  EXPECT_LT(way.turn, 1e-3);
-  EXPECT_LE(way.farthest_rad, kTolerance_rad);
+  const FollowedPath followed = follow(handed);
+  EXPECT_LT(followed.turn, 1e-3);
+  EXPECT_LE(followed.farthest_rad, kTolerance_rad);
 }
 
 TEST(PoleCorridor, LeavesThePoleWhereThePathBegins) {
@@ -127,10 +127,10 @@ TEST(PoleCorridor, LeavesThePoleWhereThePathBegins) {
   Handed handed(bench_machine(), leaning_path(60, lean));
   handed.run();
   expect_whole(handed);
-  const Way way = follow(handed);
-  EXPECT_LE(way.farthest_rad, kTolerance_rad);
-  EXPECT_LT(way.jump, 1e-6);
-  EXPECT_LT(way.turn, 1.6);
+  const FollowedPath followed = follow(handed);
+  EXPECT_LE(followed.farthest_rad, kTolerance_rad);
+  EXPECT_LT(followed.jump, 1e-6);
+  EXPECT_LT(followed.turn, 1.6);
 }
 
 TEST(PoleCorridor, HoldsTheJointAtRestWhileThePathStaysOnThePole) {
@@ -142,11 +142,11 @@ TEST(PoleCorridor, HoldsTheJointAtRestWhileThePathStaysOnThePole) {
   Handed handed(bench_machine(), leaning_path(300, lean));
   handed.run();
   expect_whole(handed);
-  const Way way = follow(handed);
-  EXPECT_LE(way.farthest_rad, kTolerance_rad);
-  EXPECT_LT(way.jump, 1e-6);
-  EXPECT_LT(way.jump_d1, 1e-4);
-  EXPECT_NEAR(way.turn, std::numbers::pi / 2, 0.3) << "a quarter turn, spread over the stay";
+  const FollowedPath followed = follow(handed);
+  EXPECT_LE(followed.farthest_rad, kTolerance_rad);
+  EXPECT_LT(followed.jump, 1e-6);
+  EXPECT_LT(followed.jump_d1, 1e-4);
+  EXPECT_NEAR(followed.turn, std::numbers::pi / 2, 0.3) << "a quarter turn, spread over the stay";
   EXPECT_LE(handed.farthest_held, 104);
 }
 
@@ -200,11 +200,11 @@ TEST(PoleCorridor, GoesOnOnAnotherWinding) {
     handed.corridor.finish();
     handed.read();
     expect_whole(handed);
-    const Way way = follow(handed.model, q, std::span(handed.out).subspan(wound_at));
-    EXPECT_LT(way.jump, 1e-6) << until;
-    EXPECT_LE(way.farthest_rad, kTolerance_rad) << until;
-    EXPECT_LT(way.turn, 1.5) << until;
-    EXPECT_GT(way.end[3], q[3] - 2) << until;
+    const FollowedPath followed = follow(handed.model, q, std::span(handed.out).subspan(wound_at));
+    EXPECT_LT(followed.jump, 1e-6) << until;
+    EXPECT_LE(followed.farthest_rad, kTolerance_rad) << until;
+    EXPECT_LT(followed.turn, 1.5) << until;
+    EXPECT_GT(followed.end[3], q[3] - 2) << until;
   }
 }
 

@@ -27,9 +27,9 @@ struct Probed {
 TEST(PoleProbes, LieAtEqualStepsOfEverySpan) {
   const Probed probed(40);
   const PoleProbes& probes = probed.probes;
-  ASSERT_EQ(probes.begin_place(), 0);
-  ASSERT_EQ(probes.end_place(), 40 * PoleProbes::kProbes);
-  for (PoleProbes::Place n = 0; n < probes.end_place(); ++n) {
+  ASSERT_EQ(probes.begin_probe(), 0);
+  ASSERT_EQ(probes.end_probe(), 40 * PoleProbes::kProbes);
+  for (PoleProbes::ProbeIndex n = 0; n < probes.end_probe(); ++n) {
     const double u = static_cast<double>(n) / PoleProbes::kProbes;
     EXPECT_NEAR(probes.u_of(n), u, 1e-12);
     EXPECT_NEAR(probes.distance_of(n), distance(u), 1e-9) << u;
@@ -43,7 +43,7 @@ TEST(PoleProbes, KnowTheDistanceBetweenThemAndWhereItIsLeast) {
     EXPECT_NEAR(probed.probes.distance_at(u), distance(u), 1e-12) << u;
   }
   EXPECT_NEAR(probed.probes.distance_at(41), distance(40), 1e-12) << "no farther than the path";
-  const PoleProbes::Place nearest = 20 * PoleProbes::kProbes + 2;  // at 20.33
+  const PoleProbes::ProbeIndex nearest = 20 * PoleProbes::kProbes + 2;  // at 20.33
   EXPECT_NEAR(probed.probes.find_nearest(nearest), 20.3, 1e-6);
   EXPECT_NEAR(probed.probes.find_nearest(nearest - 1), 20.3, 1e-6);
   EXPECT_NEAR(probed.probes.find_nearest(nearest - 2), 20 + 1.0 / 6, 1e-6)
@@ -56,7 +56,7 @@ TEST(PoleProbes, LookNoFartherThanThePath) {
   EXPECT_NEAR(probed.probes.find_nearest(20 * PoleProbes::kProbes - 1), 20, 1e-6);
   Probed behind(40);
   for (int n = 0; n < 25; ++n) behind.probes.drop_front();
-  EXPECT_NEAR(behind.probes.find_nearest(behind.probes.begin_place()), 25, 1e-6);
+  EXPECT_NEAR(behind.probes.find_nearest(behind.probes.begin_probe()), 25, 1e-6);
 }
 
 TEST(PoleProbes, FindTheSpanOfAnyPlace) {
@@ -68,9 +68,9 @@ TEST(PoleProbes, FindTheSpanOfAnyPlace) {
   EXPECT_EQ(probed.probes.front().sequence, 0U);
   for (int n = 0; n < 5; ++n) probed.probes.drop_front();
   EXPECT_EQ(probed.probes.front().sequence, 5U);
-  EXPECT_EQ(probed.probes.begin_place(), 5 * PoleProbes::kProbes);
+  EXPECT_EQ(probed.probes.begin_probe(), 5 * PoleProbes::kProbes);
   EXPECT_EQ(probed.probes.span_at(2).sequence, 5U);
-  EXPECT_NEAR(probed.probes.u_of(probed.probes.begin_place() + 2), 5 + 2.0 / 6, 1e-12);
+  EXPECT_NEAR(probed.probes.u_of(probed.probes.begin_probe() + 2), 5 + 2.0 / 6, 1e-12);
 }
 
 TEST(PoleProbes, KnowTheLeastDistanceOnTheFrontSpan) {
@@ -83,7 +83,7 @@ TEST(PoleProbes, KnowTheLeastDistanceOnTheFrontSpan) {
 TEST(PoleProbes, MeasureNothingWhereThePoleDoesNotMatter) {
   const Probed probed(40, false);
   EXPECT_EQ(probed.probes.distance_of(7), 0);
-  EXPECT_EQ(probed.probes.end_place(), 40 * PoleProbes::kProbes);
+  EXPECT_EQ(probed.probes.end_probe(), 40 * PoleProbes::kProbes);
 }
 
 TEST(PoleProbes, BeginAgainWithoutSpans) {
@@ -92,7 +92,7 @@ TEST(PoleProbes, BeginAgainWithoutSpans) {
   EXPECT_FALSE(probed.probes.is_full());
   probed.probes.begin(true);
   EXPECT_TRUE(probed.probes.is_empty());
-  EXPECT_EQ(probed.probes.end_place(), 0);
+  EXPECT_EQ(probed.probes.end_probe(), 0);
 }
 
 }  // namespace

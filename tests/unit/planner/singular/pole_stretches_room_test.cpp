@@ -23,7 +23,7 @@ TEST(PoleStretches, GoOnBehindAPlaceOfAStretchThatIsLong) {
     ASSERT_LT(one.next, 300U);
   }
   EXPECT_EQ(one.next, 81U) << "four reaches, and the span whose last probe waits for the next";
-  const PolePlace& place = one.out.place;
+  const PolePass& pass = one.out.place;
   EXPECT_EQ(place.at_begin, PoleJoin::kRest);
   EXPECT_EQ(place.at_end, PoleJoin::kHeld);
   EXPECT_NEAR(place.end, 30, 1e-9) << "where it is closest, well ahead of what is known";

@@ -22,7 +22,7 @@ TEST(PoleStretches, FindTheStretchAboutThePoleAndTheRoomBesideIt) {
   EXPECT_EQ(one.out.last, 367);
   EXPECT_NEAR(one.out.nearest, one.out.close_begin, 1e-9);
   EXPECT_TRUE(one.out.has_room);
-  const PolePlace& place = one.out.place;
+  const PolePass& pass = one.out.place;
   EXPECT_NEAR(place.begin, one.out.close_begin - kPoleReach_mm, 1e-9);
   EXPECT_NEAR(place.end, one.out.close_end + kPoleReach_mm, 1e-9);
   EXPECT_NEAR(place.known_end, one.out.close_end + 2 * kPoleReach_mm, 1e-9);

@@ -27,33 +27,33 @@ struct Followed {
     probes.begin(true);
     for (const BandSpan& span : leaning_path(count, lean)) probes.push(span);
     programmed.begin(Vector3::UnitZ());
-    place.end = 5;
-    place.known_end = count;
+    pass.end = 5;
+    pass.known_end = count;
   }
   [[nodiscard]] JointVector joints_at(double u, int branch) const {
     return solve(model, 100, pose_of<double>(probes.span_at(u), u), branch, {}).q;
   }
-  [[nodiscard]] WayBehind from(double u, int branch) const {
+  [[nodiscard]] RouteAfter from(double u, int branch) const {
     const PoleTask task{model, probes, programmed, 100, 0.001};
-    return follow_behind(task, place, u, joints_at(u, branch), branch);
+    return follow_after(task, pass, u, joints_at(u, branch), branch);
   }
 
   MachineModel model = bench_machine();
   PoleProbes probes{model};
   ProgrammedAxis programmed;
-  PolePlace place;
+  PolePass pass;
 };
 
 TEST(PoleTravel, FollowsTheRedundantJointToTheEndThatIsKnown) {
   Followed path(round);
   for (const int branch : {0, 1}) {
-    const WayBehind way = path.from(2, branch);
-    EXPECT_TRUE(way.keeps_travel);
-    EXPECT_TRUE(way.is_to_end);
-    const double turn = way.free - path.joints_at(2, branch)[3];
+    const RouteAfter route = path.from(2, branch);
+    EXPECT_TRUE(route.keeps_travel);
+    EXPECT_TRUE(route.is_to_end);
+    const double turn = route.free - path.joints_at(2, branch)[3];
     EXPECT_NEAR(std::abs(turn), 58 * std::numbers::pi / 20, 0.02) << "windings are kept";
   }
-  path.place.known_end = 12;
+  path.pass.known_end = 12;
   const double turn = path.from(2, 0).free - path.joints_at(2, 0)[3];
   EXPECT_NEAR(std::abs(turn), 10 * std::numbers::pi / 20, 0.02);
 }
@@ -75,11 +75,11 @@ TEST(PoleTravel, StopsWhereThePathComesCloseToThePoleAgain) {
   // Straight over the pole at u = 40, closer than three tolerances from 38.5 on.
   const auto lean = [](double u) { return Lean{0.002 * (40 - u), 0}; };
   Followed path(lean);
-  const WayBehind way = path.from(6, 0);
-  EXPECT_TRUE(way.keeps_travel);
-  EXPECT_FALSE(way.is_to_end);
-  EXPECT_NEAR(way.free, path.joints_at(6, 0)[3], 1e-9);
-  path.place.end = 60;  // all of it is ahead of the stretch's end
+  const RouteAfter route = path.from(6, 0);
+  EXPECT_TRUE(route.keeps_travel);
+  EXPECT_FALSE(route.is_to_end);
+  EXPECT_NEAR(route.free, path.joints_at(6, 0)[3], 1e-9);
+  path.pass.end = 60;  // all of it is ahead of the stretch's end
   EXPECT_TRUE(path.from(6, 0).is_to_end || !path.from(6, 0).keeps_travel);
 }
 

@@ -55,7 +55,7 @@ struct Walled {
   MachineModel model = bench_machine();
   PoleProbes probes{model};
   ProgrammedAxis programmed;
-  PolePlace place;
+  PolePass pass;
   PoleTask task{model, probes, programmed, kTool_mm, kTolerance_rad};
   PoleWalls walls;
 };

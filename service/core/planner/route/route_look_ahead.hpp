@@ -6,38 +6,40 @@
 #include <optional>
 #include <span>
 
-#include "service/core/planner/route/ahead_follower.hpp"
+#include "service/core/planner/route/route_follower.hpp"
 
 namespace meridian {
 
 /// How many blocks each of some ways on carries, told block by block, for who waits for them: as
-/// long as no joint and no drive of a stage is outside its travel (AheadFollower follows each
+/// long as no joint and no drive of a stage is outside its travel (RouteFollower follows each
 /// branch). The machine has a redundant joint. Bounded by the blocks, no memory. Units: mm, rad, s.
-class AheadLook {
+class RouteLookAhead {
  public:
-  static constexpr std::size_t kMaxWays = 24;
+  static constexpr std::size_t kMaxCandidates = 24;
 
-  explicit AheadLook(const MachineModel& model) noexcept : model_(model) {}
+  explicit RouteLookAhead(const MachineModel& model) noexcept : model_(model) {}
 
-  /// `start`: the pose where all ways start; of the machine's ways the first kMaxWays are looked
-  /// at.
-  void begin(double tool_length_mm, const ToolPose& start, const AheadSlack& slack,
-             std::span<const AheadWay> ways) noexcept;
+  /// `start`: the pose where all ways start; of the machine's ways the first kMaxCandidates are
+  /// looked at.
+  void begin(double tool_length_mm, const ToolPose& start, const LookAheadSlack& slack,
+             std::span<const RouteAhead> routes) noexcept;
   /// The next block behind `start`; one that starts there, where it is an arc.
   void follow(const ClBlock& block) noexcept;
 
   /// No block to come can change which ways carry farthest: one alone goes on, or none.
   [[nodiscard]] bool is_settled() const noexcept;
   [[nodiscard]] int followed() const noexcept { return followed_; }
-  [[nodiscard]] std::span<const AheadWay> ways() const noexcept { return {ways_.data(), count_}; }
+  [[nodiscard]] std::span<const RouteAhead> routes() const noexcept {
+    return {routes_.data(), count_};
+  }
 
  private:
   static constexpr int kBranches = 2;  ///< of a machine with a redundant joint
 
   const MachineModel& model_;
-  std::array<AheadWay, kMaxWays> ways_{};
+  std::array<RouteAhead, kMaxCandidates> routes_{};
   std::size_t count_ = 0;
-  std::array<std::optional<AheadFollower>, kBranches> followers_;
+  std::array<std::optional<RouteFollower>, kBranches> followers_;
   int followed_ = 0;
 };
 

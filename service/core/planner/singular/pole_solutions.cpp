@@ -83,18 +83,18 @@ PathFault Router::leave_pole_by(const PathPiece& path, const JointVector& end, c
 
 PathFault Router::leave_pole(const PathPiece& path, const ToolPose& end, const Job& job,
                              PlanCursor& cursor, Staging& out) noexcept {
-  Ways ways = find_ways(end, cursor);
-  look_behind(job.block, end, cursor.tool_length_mm, ways);
+  Candidates candidates = find_candidates(end, cursor);
+  look_past(job.block, end, cursor.tool_length_mm, candidates);
   PathFault first{PathFault::Kind::kUnreachable, -1, 0};
-  if (ways.count == 0) {
+  if (candidates.count == 0) {
     const auto at = solve(model_, cursor.tool_length_mm, end, 0, cursor.joints);
     const int joint = first_joint_outside_travel(model_, at.q, 1e-9);
     if (joint >= 0) first = {PathFault::Kind::kTravel, joint, limited_value(model_, at.q, joint)};
   }
-  for (int n = 0; n < ways.count; ++n) {
+  for (int n = 0; n < candidates.count; ++n) {
     PlanCursor trial = cursor;
     const Staging::Mark mark = out.mark();
-    const PathFault fault = leave_pole_by(path, ways.way[n].joints, job, trial, out);
+    const PathFault fault = leave_pole_by(path, candidates.candidate[n].joints, job, trial, out);
     if (!is_fault(fault)) {
       cursor = trial;
       return {};
@@ -108,11 +108,11 @@ PathFault Router::leave_pole(const PathPiece& path, const ToolPose& end, const J
 PathFault Router::leave_otherwise(const PathPiece& path, const ToolPose& end, const Job& job,
                                   const PathFault& fault, PlanCursor& cursor,
                                   Staging& out) noexcept {
-  Ways ways = find_ways(end, cursor);
-  look_behind(job.block, end, cursor.tool_length_mm, ways);
+  Candidates candidates = find_candidates(end, cursor);
+  look_past(job.block, end, cursor.tool_length_mm, candidates);
   const ToolPose rest = pose_at(path, 0.0);
-  for (int n = 0; n < ways.count; ++n) {
-    const JointVector& joints = ways.way[n].joints;
+  for (int n = 0; n < candidates.count; ++n) {
+    const JointVector& joints = candidates.candidate[n].joints;
     PlanCursor trial = cursor;
     const Staging::Mark mark = out.mark();
     const double free = follow_back(path, joints, 0.0, cursor.tool_length_mm);
@@ -149,11 +149,13 @@ bool Router::is_straight_passage(const PathPiece& path, double free_end, const P
 
 PathFault Router::pass_pole(const PathPiece& path, const ToolPose& end, double share,
                             const Job& job, PlanCursor& cursor, Staging& out) noexcept {
-  Ways ways = find_ways(end, cursor);
-  look_behind(job.block, end, cursor.tool_length_mm, ways);
+  Candidates candidates = find_candidates(end, cursor);
+  look_past(job.block, end, cursor.tool_length_mm, candidates);
   const int free = redundant_joint(model_);
-  for (int n = 0; n < ways.count && ways.way[n].carries == ways.way[0].carries; ++n) {
-    const double free_end = ways.way[n].joints[free];
+  for (int n = 0;
+       n < candidates.count && candidates.candidate[n].carries == candidates.candidate[0].carries;
+       ++n) {
+    const double free_end = candidates.candidate[n].joints[free];
     if (!is_straight_passage(path, free_end, cursor, job.on_pole_rad)) continue;
     PlanCursor trial = cursor;
     const Staging::Mark mark = out.mark();

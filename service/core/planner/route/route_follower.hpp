@@ -6,7 +6,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "meridian/path/path_piece.hpp"
-#include "service/core/planner/route/ahead_way.hpp"
+#include "service/core/planner/route/route_ahead.hpp"
 
 namespace meridian {
 
@@ -20,11 +20,11 @@ namespace meridian {
 ///
 /// Units: mm, rad, s. No memory.
 // Flags: each is known by itself on the path, in any order.
-class AheadFollower {
+class RouteFollower {
  public:
   /// `ways` must stay.
-  AheadFollower(const MachineModel& model, double tool_length_mm, const AheadSlack& slack,
-                int branch, const ToolPose& start, std::span<AheadWay> ways) noexcept;
+  RouteFollower(const MachineModel& model, double tool_length_mm, const LookAheadSlack& slack,
+                int branch, const ToolPose& start, std::span<RouteAhead> routes) noexcept;
 
   /// The branch can be followed no farther, or none of its ways is open.
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
@@ -36,7 +36,7 @@ class AheadFollower {
   [[nodiscard]] double feed_time_s(const PathPiece& path, const ClBlock& block) const noexcept;
   /// False: the branch cannot be followed there. `feed_s`: the time that the feed takes there.
   [[nodiscard]] bool put_at(const ToolPose& pose, double feed_s) noexcept;
-  void check(const ToolPose& pose, AheadWay& way) const noexcept;
+  void check(const ToolPose& pose, RouteAhead& route) const noexcept;
   /// Whether a rewind may help where `joint` runs out of travel, at `pose`.
   [[nodiscard]] bool may_rewind(int joint, const ToolPose& pose) const noexcept;
   /// Whether joints stand in a keep-out box or have the tip outside of its box. How far a run
@@ -49,12 +49,12 @@ class AheadFollower {
 
   const MachineModel& model_;
   double tool_length_mm_;
-  AheadSlack slack_;
+  LookAheadSlack slack_;
   int branch_, free_;
   double pole_rad_;
   ToolPose pose_;
   const ClBlock* block_ = nullptr;  ///< that is followed
-  std::span<AheadWay> ways_;
+  std::span<RouteAhead> routes_;
   JointVector joints_{};
   double begin_ = 0;  ///< of the redundant joint
   double time_s_ = 0;

@@ -8,7 +8,7 @@
 namespace meridian {
 
 /// What became of a way as far as it was looked at.
-enum class AheadEnd : std::uint8_t {
+enum class RouteEnd : std::uint8_t {
   kNone,     ///< all is inside travel
   kDoubt,    ///< something is outside, by no more than rounding inside the slack may make of it or
              ///< on a branch that is not certain, or is at a box
@@ -17,17 +17,17 @@ enum class AheadEnd : std::uint8_t {
 };
 
 /// A branch and winding at the pose where a way starts, and how far it leads.
-struct AheadWay {
+struct RouteAhead {
   int branch = 0;
   double free = 0;  ///< the redundant joint at the start, rad
   int carries = 0;  ///< blocks after which all is inside travel and past boxes, of those looked at
   double time_s = 0;  ///< of them: by the feed, or by the joint that is slowest
-  AheadEnd end = AheadEnd::kNone;
+  RouteEnd end = RouteEnd::kNone;
   BlockReject lost{};  ///< kLost: the block, the joint and where it comes to
 };
 
 /// How far the path that is cut may lie from the programmed one; 0: it is that one.
-struct AheadSlack {
+struct LookAheadSlack {
   double tip_mm = 0, axis_rad = 0;
 };
 

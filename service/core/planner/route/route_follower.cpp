@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/route/ahead_follower.hpp"
+#include "service/core/planner/route/route_follower.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -28,13 +28,13 @@ constexpr int kMaxSteps = 256;  // per block
 constexpr double kBend = 1.5;   // of the joints over the slack: it ends well outside of the pole
 
 /// Whether a way that came to `end` may still turn out otherwise.
-bool is_open(AheadEnd end) noexcept { return end == AheadEnd::kNone || end == AheadEnd::kDoubt; }
+bool is_open(RouteEnd end) noexcept { return end == RouteEnd::kNone || end == RouteEnd::kDoubt; }
 
 }  // namespace
 
-AheadFollower::AheadFollower(const MachineModel& model, double tool_length_mm,
-                             const AheadSlack& slack, int branch, const ToolPose& start,
-                             std::span<AheadWay> ways) noexcept
+RouteFollower::RouteFollower(const MachineModel& model, double tool_length_mm,
+                             const LookAheadSlack& slack, int branch, const ToolPose& start,
+                             std::span<RouteAhead> routes) noexcept
     : model_(model),
       tool_length_mm_(tool_length_mm),
       slack_(slack),
@@ -44,7 +44,7 @@ AheadFollower::AheadFollower(const MachineModel& model, double tool_length_mm,
           std::max(kZoneTolerances * std::max(axis_tolerance_beside_pole(model), slack.axis_rad),
                    kMinPole_rad)),
       pose_(start),
-      ways_(ways) {
+      routes_(routes) {
   const auto at = solve(model_, tool_length_mm_, start, branch_, JointVector{});
   const double distance = pole_distance(model_, start.axis);
   is_over_ = at.status != SolveStatus::kOk || distance < kPoleDeviation_rad;
@@ -54,19 +54,19 @@ AheadFollower::AheadFollower(const MachineModel& model, double tool_length_mm,
   begin_ = joints_[free_];
 }
 
-void AheadFollower::follow(const ClBlock& block) noexcept {
+void RouteFollower::follow(const ClBlock& block) noexcept {
   block_ = &block;
   is_tool_known_ &= block.kind != BlockKind::kTool;
   if (is_motion(block.kind)) run(block);
   if (is_over_) return;
-  for (AheadWay& way : ways_) {
-    if (way.branch != branch_ || way.end != AheadEnd::kNone) continue;
-    ++way.carries;
-    way.time_s = time_s_;
+  for (RouteAhead& route : routes_) {
+    if (route.branch != branch_ || route.end != RouteEnd::kNone) continue;
+    ++route.carries;
+    route.time_s = time_s_;
   }
 }
 
-void AheadFollower::run(const ClBlock& block) noexcept {
+void RouteFollower::run(const ClBlock& block) noexcept {
   const auto unit = UnitVector3::near_unit(to_vector(block.axis));
   const ToolPose end{to_vector(block.tip_mm), unit ? unit->vector() : Vector3::UnitZ()};
   if (!unit || !end.tip.allFinite()) {
@@ -91,12 +91,12 @@ void AheadFollower::run(const ClBlock& block) noexcept {
   }
 }
 
-double AheadFollower::feed_time_s(const PathPiece& path, const ClBlock& block) const noexcept {
+double RouteFollower::feed_time_s(const PathPiece& path, const ClBlock& block) const noexcept {
   if (block.kind != BlockKind::kCut || !(block.feed > 0)) return 0;
   return block.feed_meaning == FeedMeaning::kTip ? tip_length(path) / block.feed : 1 / block.feed;
 }
 
-bool AheadFollower::put_at(const ToolPose& pose, double feed_s) noexcept {
+bool RouteFollower::put_at(const ToolPose& pose, double feed_s) noexcept {
   const auto at = solve(model_, tool_length_mm_, pose, branch_, joints_);
   const double distance = pole_distance(model_, pose.axis);
   has_left_pole_ |= distance >= pole_rad_;
@@ -109,33 +109,33 @@ bool AheadFollower::put_at(const ToolPose& pose, double feed_s) noexcept {
   time_s_ += time_s;
   joints_ = at.q;
   bool is_any_left = false;
-  for (AheadWay& way : ways_) {
-    if (way.branch != branch_) continue;
-    if (is_open(way.end)) check(pose, way);
-    is_any_left |= is_open(way.end);
+  for (RouteAhead& route : routes_) {
+    if (route.branch != branch_) continue;
+    if (is_open(route.end)) check(pose, route);
+    is_any_left |= is_open(route.end);
   }
   return is_any_left;
 }
 
-void AheadFollower::check(const ToolPose& pose, AheadWay& way) const noexcept {
+void RouteFollower::check(const ToolPose& pose, RouteAhead& route) const noexcept {
   JointVector all = joints_;
-  all[free_] += way.free - begin_;
+  all[free_] += route.free - begin_;
   const int joint = first_outside(all);
   if (joint < 0) {
-    if (has_boxes(model_) && is_tool_known_ && is_at_box(all)) way.end = AheadEnd::kDoubt;
+    if (has_boxes(model_) && is_tool_known_ && is_at_box(all)) route.end = RouteEnd::kDoubt;
     return;
   }
-  way.end = may_rewind(joint, pose) ? AheadEnd::kRewinds : AheadEnd::kDoubt;
-  if (way.end == AheadEnd::kRewinds) return;
+  route.end = may_rewind(joint, pose) ? RouteEnd::kRewinds : RouteEnd::kDoubt;
+  if (route.end == RouteEnd::kRewinds) return;
   const double value = limited_value(model_, all, joint);
   const JointLimits& limits = limited_spec(model_, joint).limits;
   const double beyond = std::max(value - limits.travel_max, limits.travel_min - value);
   if (!is_branch_certain_ || !(beyond > spread_of(joint, pose))) return;
-  way.end = AheadEnd::kLost;
-  way.lost = {block_->sequence, block_->line, RejectCode::kTravelBetween, joint, value};
+  route.end = RouteEnd::kLost;
+  route.lost = {block_->sequence, block_->line, RejectCode::kTravelBetween, joint, value};
 }
 
-bool AheadFollower::may_rewind(int joint, const ToolPose& pose) const noexcept {
+bool RouteFollower::may_rewind(int joint, const ToolPose& pose) const noexcept {
   if (model_.rewind_policy != RewindPolicy::kRetract || joint != free_) return false;
   const JointLimits& limits = model_.joints[free_].limits;
   if (limits.travel_max - limits.travel_min >= kTurn_rad) return true;
@@ -145,12 +145,12 @@ bool AheadFollower::may_rewind(int joint, const ToolPose& pose) const noexcept {
   return first_outside(other.q) < 0;
 }
 
-bool AheadFollower::is_at_box(const JointVector& all) const noexcept {
+bool RouteFollower::is_at_box(const JointVector& all) const noexcept {
   return keep_out_at(model_.keep_out, all) >= 0 ||
          tip_axis_outside(model_, tool_length_mm_, all) >= 0;
 }
 
-int AheadFollower::first_outside(const JointVector& all) const noexcept {
+int RouteFollower::first_outside(const JointVector& all) const noexcept {
   if (is_tool_known_) return first_joint_outside_travel(model_, all, kTravelMargin);
   for (int i = 0; i < model_.joint_count; ++i) {
     if (model_.joints[i].is_rotary && !is_inside_travel(model_.joints[i], all[i], kTravelMargin))
@@ -159,7 +159,7 @@ int AheadFollower::first_outside(const JointVector& all) const noexcept {
   return -1;
 }
 
-double AheadFollower::spread_of(int joint, const ToolPose& pose) const noexcept {
+double RouteFollower::spread_of(int joint, const ToolPose& pose) const noexcept {
   const double here = limited_value(model_, joints_, joint);
   double sum = 0;
   const auto add = [&](const ToolPose& beside) {
@@ -168,8 +168,8 @@ double AheadFollower::spread_of(int joint, const ToolPose& pose) const noexcept 
                                          : std::numeric_limits<double>::infinity();
   };
   const Vector3 across = pose.axis.unitOrthogonal();
-  for (const Vector3& way : {across, Vector3(pose.axis.cross(across))}) {
-    add({pose.tip, (pose.axis + std::tan(slack_.axis_rad) * way).normalized()});
+  for (const Vector3& route : {across, Vector3(pose.axis.cross(across))}) {
+    add({pose.tip, (pose.axis + std::tan(slack_.axis_rad) * route).normalized()});
   }
   for (int i = 0; i < 3; ++i) add({pose.tip + slack_.tip_mm * Vector3::Unit(i), pose.axis});
   return kBend * sum;
