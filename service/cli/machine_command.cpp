@@ -8,7 +8,7 @@
 #include "service/cli/options/cl_options.hpp"
 #include "service/cli/options/finite_range.hpp"
 #include "service/cli/options/machine_options.hpp"
-#include "service/cli/options/place_options.hpp"
+#include "service/cli/options/placing_options.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "service/machine/inspect/inspection.hpp"
 #include "service/machine/inspect/joint_pattern.hpp"
@@ -23,7 +23,7 @@ namespace {
 struct Options {
   MachineOptions machine;
   ClFileOptions cl;
-  PlaceOptions place;
+  PlacingOptions placing;
   std::string picture, along, pattern, touches, written;
   std::optional<double> sphere_radius_mm;
 };
@@ -70,8 +70,8 @@ int run(const Options& options) {
                              {options.picture, options.pattern, options.written});
   if (!lost.empty()) return refuse(lost);
   const MachineModel model = load_machine(options.machine);
-  if (!options.place.program.empty()) {
-    const auto code = run_place(options.place, options.cl, options.machine, model);
+  if (!options.placing.program.empty()) {
+    const auto code = run_placing(options.placing, options.cl, options.machine, model);
     return code ? *code : refuse(code.error());
   }
   if (!options.touches.empty()) return calibrate(options, model);
@@ -113,7 +113,7 @@ void add(CLI::App& app, int& exit_code) {
       ->needs(picture);
   command->add_option("--pattern", options->pattern,
                       "Write a CL file that moves each joint alone, forwards and back");
-  CLI::Option* const program = add_place_options(*command, options->place);
+  CLI::Option* const program = add_placing_options(*command, options->placing);
   command->add_option("--tools", options->machine.tools,
                       "With --place or --along: tool table (TOML)");
   command

@@ -176,7 +176,7 @@ bool Intake::may_open(const dds::SessionRequest& request) {
 
 void Intake::put_in_force(const SetUpInForce& in_force) noexcept {
   in_force_ = in_force;
-  place(model_, in_force);
+  apply_set_up(model_, in_force);
   setup_.frame = in_force.sum;
   setup_.tools = in_force.tools;
 }

@@ -36,7 +36,7 @@ static_assert(std::is_trivially_copyable_v<SetUpInForce>);
 
 /// Puts the workpiece of `model` where `set_up` says, and gives its joints the travel of it.
 /// RT: cycle.
-inline void place(MachineModel& model, const SetUpInForce& set_up) noexcept {
+inline void apply_set_up(MachineModel& model, const SetUpInForce& set_up) noexcept {
   for (int i = 0; i < 9; ++i) {
     model.X_MW.rotation(i / 3, i % 3) = set_up.rotation[static_cast<std::size_t>(i)];
   }

@@ -95,7 +95,7 @@ void CycleThread::hand_over() noexcept {
 
 /// Between two programs: nothing that is planned by the set-up before runs any more.
 void CycleThread::take_set_up() noexcept {
-  if (ports_.set_up.for_cycle.refresh()) place(model_, ports_.set_up.for_cycle.latest());
+  if (ports_.set_up.for_cycle.refresh()) apply_set_up(model_, ports_.set_up.for_cycle.latest());
 }
 
 /// Ahead of the wake, so that the publisher passes it on in this very cycle.

@@ -19,7 +19,7 @@ class CycleThread {
               const monitoring::Limits& limits, Ports& ports) noexcept;
 
   /// Before run(): where the workpiece lies.
-  void set_up(const SetUpInForce& in_force) noexcept { place(model_, in_force); }
+  void set_up(const SetUpInForce& in_force) noexcept { apply_set_up(model_, in_force); }
   /// Runs until Ports::is_stopping.
   void run() noexcept;
 

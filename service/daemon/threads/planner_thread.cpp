@@ -48,7 +48,8 @@ bool PlannerThread::work() noexcept {
     const SessionSettings& asked = ports_.session_settings.latest();
     if (asked.session != look.front->session) return false;  // the block is void by now
     // Set before the session was opened that sent this block.
-    if (ports_.set_up.for_planner.refresh()) place(model_, ports_.set_up.for_planner.latest());
+    if (ports_.set_up.for_planner.refresh())
+      apply_set_up(model_, ports_.set_up.for_planner.latest());
     if (ports_.set_up.planner_tools.try_take(spare_tools_)) planner_.swap_tools(spare_tools_);
     planner_.begin(view.record.joints, ports_.spindle_tool_mm.load(std::memory_order_relaxed),
                    view.epoch, asked.settings);

@@ -22,7 +22,7 @@ class PlannerThread {
 
   /// Before run(): where the workpiece lies, and with which tools it is cut.
   void set_up(const SetUpInForce& in_force, ToolTable tools) noexcept {
-    place(model_, in_force);
+    apply_set_up(model_, in_force);
     planner_.swap_tools(tools);
   }
   /// Runs until Ports::is_stopping.

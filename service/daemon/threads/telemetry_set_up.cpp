@@ -13,7 +13,7 @@ bool TelemetryThread::take_set_up() noexcept {
 
 void TelemetryThread::put_in_force(const SetUpInForce& in_force) noexcept {
   in_force_ = in_force;
-  place(model_, in_force);
+  apply_set_up(model_, in_force);
   setup_.frame = in_force.sum;
   setup_.tools = in_force.tools;
   status_.work_frame = in_force.number;

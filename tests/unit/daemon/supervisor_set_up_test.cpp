@@ -270,7 +270,7 @@ TEST_F(SupervisorSetUp, ShrinksTheTravelOfEverybodyAndGivesItBack) {
   ASSERT_TRUE(command);
   ASSERT_TRUE(ports_->set_up.for_cycle.refresh());
   MachineModel cycles = model_;
-  place(cycles, ports_->set_up.for_cycle.latest());
+  apply_set_up(cycles, ports_->set_up.for_cycle.latest());
   EXPECT_EQ(cycles.joints[0].limits.travel_max, whole.travel_max / 2);
   EXPECT_EQ(cycles.joints[1].limits.travel_max, model_.joints[1].limits.travel_max);
   report(EventCode::kAccepted, command->request, Verb::kLimits);
@@ -284,7 +284,7 @@ TEST_F(SupervisorSetUp, ShrinksTheTravelOfEverybodyAndGivesItBack) {
   say_limits({LimitsWord::kClear, LimitsOrder::kAllJoints});
   do_it(Verb::kLimits);
   ASSERT_TRUE(ports_->set_up.for_cycle.refresh());
-  place(cycles, ports_->set_up.for_cycle.latest());
+  apply_set_up(cycles, ports_->set_up.for_cycle.latest());
   EXPECT_EQ(cycles.joints[0].limits.travel_min, whole.travel_min);
   EXPECT_EQ(cycles.joints[0].limits.travel_max, whole.travel_max);
   EXPECT_TRUE(on_disk().limits.empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cli/options/place_options.hpp"
+#include "service/cli/options/placing_options.hpp"
 
 #include <fstream>
 #include <iostream>
@@ -56,7 +56,7 @@ struct TimedPlacing {
   std::string reason;  ///< why the program does not run there; empty: it runs
 };
 
-TimedPlacing simulate_at(const inspect::Placing& placing, const PlaceOptions& options,
+TimedPlacing simulate_at(const inspect::Placing& placing, const PlacingOptions& options,
                          const ClFileOptions& cl, const MachineOptions& machine,
                          const MachineModel& model) {
   const MachineModel there = inspect::placed(model, placing.origin_mm, placing.turn_rad);
@@ -76,7 +76,7 @@ std::string time_text(const TimedPlacing& at) {
 
 /// The quicker one of the frames with the largest margin and with the least estimated time, as
 /// simulated.
-TimedPlacing fastest(const inspect::Placing& widest, const PlaceOptions& options,
+TimedPlacing fastest(const inspect::Placing& widest, const PlacingOptions& options,
                      const std::vector<inspect::ProgramPose>& poses, const inspect::PlacingBox& box,
                      const ClFileOptions& cl, const MachineOptions& machine,
                      const MachineModel& model) {
@@ -93,7 +93,7 @@ TimedPlacing fastest(const inspect::Placing& widest, const PlaceOptions& options
 
 }  // namespace
 
-CLI::Option* add_place_options(CLI::App& command, PlaceOptions& options) {
+CLI::Option* add_placing_options(CLI::App& command, PlacingOptions& options) {
   CLI::Option* const program = command.add_option(
       "--place", options.program,
       "A part program: find the frame in which it fits with the largest margin to all ends of "
@@ -126,8 +126,8 @@ Expected<std::vector<inspect::ProgramPose>, std::string> read_program_poses(
   return *std::move(poses);
 }
 
-Expected<int, std::string> run_place(const PlaceOptions& options, const ClFileOptions& cl,
-                                     const MachineOptions& machine, const MachineModel& model) {
+Expected<int, std::string> run_placing(const PlacingOptions& options, const ClFileOptions& cl,
+                                       const MachineOptions& machine, const MachineModel& model) {
   if (options.is_fastest && !can_be_read_twice(options.program)) {
     return tl::make_unexpected("--fastest reads the program again and again: give a file");
   }

@@ -14,14 +14,14 @@
 namespace meridian::cli {
 
 /// The options of `meridian machine --place`.
-struct PlaceOptions {
+struct PlacingOptions {
   std::string program, box;
   bool may_turn = false;    ///< about z
   bool is_fastest = false;  ///< the least time is looked for, not the largest margin
 };
 
 /// Adds --place, which is returned, --box, --turn and --fastest.
-CLI::Option* add_place_options(CLI::App& command, PlaceOptions& options);
+CLI::Option* add_placing_options(CLI::App& command, PlacingOptions& options);
 
 /// Every pose of program `name`, or why it cannot be read. Throws config::ConfigError.
 [[nodiscard]] Expected<std::vector<inspect::ProgramPose>, std::string> read_program_poses(
@@ -30,9 +30,9 @@ CLI::Option* add_place_options(CLI::App& command, PlaceOptions& options);
 
 /// Looks for a frame in which the whole program fits and prints it. The exit code, or why the
 /// program cannot be read. Throws config::ConfigError.
-[[nodiscard]] Expected<int, std::string> run_place(const PlaceOptions& options,
-                                                   const ClFileOptions& cl,
-                                                   const MachineOptions& machine,
-                                                   const MachineModel& model);
+[[nodiscard]] Expected<int, std::string> run_placing(const PlacingOptions& options,
+                                                     const ClFileOptions& cl,
+                                                     const MachineOptions& machine,
+                                                     const MachineModel& model);
 
 }  // namespace meridian::cli
