@@ -120,7 +120,7 @@ int run_drives(const DrivesOptions& options) {
   simulated.has_priority = drives::prepare_drive_priority();
   std::optional<InjectionConsole> console;
   if (options.has_console) simulated.injections_now = &console.emplace(model).injections();
-  const dds::ParticipantOptions place{
+  const dds::ParticipantOptions participant_options{
       .domain = options.domain,
       .machine = options.partition.empty() ? model.name : options.partition,
       .transport =
@@ -128,10 +128,10 @@ int run_drives(const DrivesOptions& options) {
       .open_network =
           options.is_open_network ? dds::OpenNetwork::kAllowed : dds::OpenNetwork::kRefused};
   if (options.is_check) {
-    return check_drives(place, model,
+    return check_drives(participant_options, model,
                         options.has_operator ? drives::Operator::kThere : drives::Operator::kAway);
   }
-  dds::Participant participant(place);
+  dds::Participant participant(participant_options);
   if (participant.is_open_network()) {
     std::fprintf(stderr, "meridian drives: OPEN NETWORK: whoever reaches it may send setpoints\n");
   }

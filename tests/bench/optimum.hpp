@@ -165,7 +165,7 @@ class OptimumSearch {
   [[nodiscard]] Optimum find() {
     Optimum out;
     if (!is_ready_) return out;
-    place_ends();
+    set_ends();
     pass_without_jerk(out);
     JerkStep solver(*grid_, limits_, static_cast<int>(cells_));
     for (; out.passes < task_.max_passes; ++out.passes) {
@@ -189,7 +189,7 @@ class OptimumSearch {
   }
 
   /// The first and the last cell, and how many lie between.
-  void place_ends() {
+  void set_ends() {
     const std::int64_t last = grid_->last(), reach = std::min(last, kReach);
     cells_ = static_cast<std::size_t>(last - 2);
     start_ = find_rest_cell(limits_, (*grid_)[0], true, steady_b(*grid_, limits_, 0, reach));

@@ -35,7 +35,8 @@ class LaiCorpus : public testing::Test {
 };
 
 /// `want` lead to `pose`, and on their branch back.
-void expect_both_ways(const GoldenMachine& machine, const ToolPose& pose, const JointVector& want) {
+void expect_both_directions(const GoldenMachine& machine, const ToolPose& pose,
+                            const JointVector& want) {
   expect_pose(forward(machine.model, machine.tool_length_mm, want), pose);
   const auto s = solve(machine.model, machine.tool_length_mm, pose, branch_of(want), want);
   for (int j = 0; j < 5; ++j) {
@@ -52,7 +53,7 @@ TEST_F(LaiCorpus, ForwardAndInverseAgreeWithA_fkik) {
     const ToolPose pose = pose_of(table.numbers(row, "Px", 6));
     for (const char* first : {"b3", "b3_alt"}) {
       const JointVector want = joints_of(table.numbers(row, first, 5));
-      expect_both_ways(machine, pose, want);
+      expect_both_directions(machine, pose, want);
     }
   }
 }
@@ -65,7 +66,7 @@ TEST_F(LaiCorpus, EveryConstantHasTheSignOfA_params) {
     const GoldenMachine machine(table, row, "");
     const JointVector want = joints_of(table.numbers(row, "b3", 5));
     const ToolPose pose = pose_of(table.numbers(row, "Px", 6));
-    expect_both_ways(machine, pose, want);
+    expect_both_directions(machine, pose, want);
   }
 }
 

@@ -70,11 +70,11 @@ void FeedPicture::print_columns(std::FILE* out, const std::vector<LimitId>& show
   double time = 0, distance = 0;
   for (const Column& column : columns_) {
     const LimitId main = find_main(column.by_limit);
-    const auto place = std::find(shown.begin(), shown.end(), main) - shown.begin();
+    const auto index = std::find(shown.begin(), shown.end(), main) - shown.begin();
     std::fprintf(out, "%.7g %.7g %.7g %.7g %.5g %.5g %d\n", time, time + column.time_s, distance,
                  distance + column.distance_mm,
                  units::per_min_from_per_s(column.distance_mm / column.time_s),
-                 units::per_min_from_per_s(column.programmed_mm_per_s), static_cast<int>(place));
+                 units::per_min_from_per_s(column.programmed_mm_per_s), static_cast<int>(index));
     time += column.time_s;
     distance += column.distance_mm;
   }
@@ -108,8 +108,8 @@ void FeedPicture::print(std::FILE* out, const std::string& title) const {
       units::per_min_from_per_s(1.15 * max));
   double others = whole;
   for (const LimitId id : shown) others -= time[id];
-  const auto panel = [&](int from, const char* label, double place) {
-    std::fprintf(out, "set origin 0,%.3f\nset size 1,0.47\nset xlabel '%s'\nplot", place, label);
+  const auto panel = [&](int from, const char* label, double bottom) {
+    std::fprintf(out, "set origin 0,%.3f\nset size 1,0.47\nset xlabel '%s'\nplot", bottom, label);
     for (std::size_t n = 0; n <= shown.size(); ++n) {
       const bool is_other = n == shown.size();
       if (is_other && !(others > 0.0005 * whole)) continue;

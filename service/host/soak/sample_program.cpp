@@ -15,7 +15,7 @@
 namespace meridian::soak {
 namespace {
 
-constexpr double kLargestWay_mm = 12, kLargestTurn_deg = 6;
+constexpr double kMaxDistance_mm = 12, kLargestTurn_deg = 6;
 
 struct Swing {
   double amplitude = 0, pace = 0;  ///< mm or rad; rad per block
@@ -38,7 +38,7 @@ void write_sample_program(const MachineModel& model, std::uint64_t seed,
   std::array<Swing, kMaxJoints> swings{};
   for (int joint = 0; joint < model.joint_count; ++joint) {
     const JointSpec& spec = model.joints[joint];
-    const double max = spec.is_rotary ? units::rad_from_deg(kLargestTurn_deg) : kLargestWay_mm;
+    const double max = spec.is_rotary ? units::rad_from_deg(kLargestTurn_deg) : kMaxDistance_mm;
     double amplitude = pick(random, 0.2, 1) * max;
     if (!is_inside_travel(spec, begin[joint] + amplitude, 0)) amplitude = -amplitude;
     swings[joint] = {amplitude, pick(random, 0.01, 0.06)};

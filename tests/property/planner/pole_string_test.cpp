@@ -94,9 +94,9 @@ Draw drawn(std::uint32_t seed) {
 /// The corridor of the redundant joint along a way, by the programmed axes alone, and the least
 /// time through it with feed and the joint's speed alone: the string, on the best sides of its
 /// walls.
-class LeastTime {
+class MinTime {
  public:
-  LeastTime(const Draw& draw, double speed) : speed_(speed) {
+  MinTime(const Draw& draw, double speed) : speed_(speed) {
     add(0, draw.axes[0]);
     for (std::size_t n = 1; n < draw.axes.size(); ++n) {
       const Lean &a = draw.axes[n - 1], &b = draw.axes[n];
@@ -225,7 +225,7 @@ TEST(PoleString, TakesLittleMoreThanTheLeastTimeOfTheCorridor) {
     const Draw draw = drawn(seed);
     const double feed_s = draw.step_mm * static_cast<double>(draw.axes.size() - 1) / kFeed_mm_per_s;
     const JointLimits& limits = model.joints[redundant_joint(model)].limits;
-    const double string_s = LeastTime(draw, limits.velocity).find();
+    const double string_s = MinTime(draw, limits.velocity).find();
     const double off_s = cut(model, program_of(draw, kFar_rad)).duration_s();
     const double turn_s = limits.velocity / limits.acceleration + limits.acceleration / limits.jerk;
     const double ramps_s = off_s - feed_s + (string_s > 1.01 * feed_s ? turn_s : 0);

@@ -29,7 +29,7 @@ TEST(SimulatedPlc, SaysDoneAfterItsDelay) {
   EXPECT_FALSE(peer.due_answer(2000));
 }
 
-TEST(SimulatedPlc, RefusesWhenToldTo) {
+TEST(SimulatedPlc, RefusesWhenAskedTo) {
   ActionPeer peer(0, true);
   peer.take(action(3), 0);
   const auto done = peer.due_answer(0);

@@ -25,7 +25,7 @@ double number_after(const std::string& words, const std::string& text) {
   return at == std::string::npos ? -1 : std::stod(text.substr(at + words.size()));
 }
 
-TEST(PlaceCommand, FastestPrintsTheTimesThatBothFramesWereSimulatedWith) {
+TEST(PlacingCommand, FastestPrintsTheTimesThatBothFramesWereSimulatedWith) {
   const CommandOutput found = run_tool("machine " + kTrunnion + " --place " + kBlossom +
                                        " --fastest --box 100,300,100,300,50,150");
   ASSERT_EQ(found.exit_code, 0) << found.output;
@@ -42,13 +42,13 @@ TEST(PlaceCommand, FastestPrintsTheTimesThatBothFramesWereSimulatedWith) {
   EXPECT_NEAR(number_after("time ", run.output), quick_s, 0.06) << run.output;
 }
 
-TEST(PlaceCommand, FastestWantsAFileThatCanBeReadTwice) {
+TEST(PlacingCommand, FastestWantsAFileThatCanBeReadTwice) {
   const CommandOutput pipe = run_tool("machine " + kTrunnion + " --place - --fastest </dev/null");
   EXPECT_NE(pipe.exit_code, 0);
   EXPECT_NE(pipe.output.find("give a file"), std::string::npos) << pipe.output;
 }
 
-TEST(PlaceCommand, NamesEverythingThatIsInTheWayAsThePageShows) {
+TEST(PlacingCommand, NamesEverythingThatIsInTheWayAsThePageShows) {
   const TextFile part(
       "UNITS/MM\nMULTAX/ON\nFEDRAT/600,MMPM\nGOTO/0,0,0,0,0,1\nGOTO/1500,0,0,0,0,1\n"
       "GOTO/1500,1500,0,0,0,1\nGOTO/0,1500,0,0,0,1\nFINI\n",
