@@ -25,8 +25,8 @@ class MotionAhead {
       if (piece == nullptr || piece->epoch != reader_.epoch()) return nullptr;
       if (is_in_tail_ && !(piece->is_tail && piece->window == window_)) return nullptr;
       if (piece->is_tail && !is_in_tail_) {
-        if (const std::size_t behind = reader_.find_behind_tail(slot_); behind > 0) {
-          slot_ = behind - 1;
+        if (const std::size_t after = reader_.find_after_tail(slot_); after > 0) {
+          slot_ = after - 1;
           continue;
         }
         is_in_tail_ = true;

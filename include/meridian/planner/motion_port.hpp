@@ -219,10 +219,10 @@ class MotionReader {
 
   /// A tail starts `i` places behind the piece in force. How many places behind it the window
   /// begins that goes on in the tail's place; 0: as it stands now the tail is run.
-  [[nodiscard]] std::size_t find_behind_tail(std::size_t i) noexcept {
+  [[nodiscard]] std::size_t find_after_tail(std::size_t i) noexcept {
     const std::size_t front = piece_ != nullptr ? 0 : 1;
-    const std::size_t behind = find_continuation(*port_.times.peek(i - front), i - front);
-    return behind > 0 ? behind + front : 0;
+    const std::size_t after = find_continuation(*port_.times.peek(i - front), i - front);
+    return after > 0 ? after + front : 0;
   }
 
   /// The tail of the window that `piece` is of, ahead or in force, is run whatever is published
@@ -264,9 +264,10 @@ class MotionReader {
 
   /// The place in the ring of the window behind the tail that starts with `tail`, at `place`; 0
   /// where it is not there, starts from rest or may not go on.
-  [[nodiscard]] std::size_t find_continuation(const TimePiece& tail, std::size_t place) noexcept {
+  [[nodiscard]] std::size_t find_continuation(const TimePiece& tail,
+                                              std::size_t position) noexcept {
     if (pack(tail) == kept_tail_) return 0;
-    for (std::size_t i = place + 1;; ++i) {
+    for (std::size_t i = position + 1;; ++i) {
       const TimePiece* later = port_.times.peek(i);
       if (later == nullptr || later->epoch != epoch_) return 0;
       if (later->window != tail.window) return later->is_from_rest ? 0 : i;

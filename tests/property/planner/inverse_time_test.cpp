@@ -184,11 +184,11 @@ Speeds measure(const MachineModel& model, const std::vector<ClBlock>& blocks) {
     if (!(u0 < u1 && u1 < kNone)) continue;
     const ToolPose a = forward(model, model.tool_length_mm, from.q);
     const ToolPose b = forward(model, model.tool_length_mm, to.q);
-    const Asked most = fastest_about(asked, u0, u1);
+    const Asked largest = fastest_about(asked, u0, u1);
     const double tip = ((b.tip - a.tip).norm() - 1e-11) / kCycle_s;
     const double turn = angle_between(a.axis, b.axis) / kCycle_s - 1e-9;
-    out.tip = std::max(out.tip, tip / std::min(most.tip_mm_per_s, model.max_feed_mm_per_s));
-    out.turn = std::max(out.turn, turn / most.turn_rad_per_s);
+    out.tip = std::max(out.tip, tip / std::min(largest.tip_mm_per_s, model.max_feed_mm_per_s));
+    out.turn = std::max(out.turn, turn / largest.turn_rad_per_s);
     out.tip_mm_per_s = std::max(out.tip_mm_per_s, tip);
   }
   return out;

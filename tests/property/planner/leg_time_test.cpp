@@ -41,9 +41,9 @@ struct DrawnBlock {
     const double share = draw.log_uniform(0.01, 0.5);
     for (int i = 0; i < model.joint_count; ++i) {
       const JointLimits& limits = model.joints[i].limits;
-      const double most = model.joints[i].is_rotary ? 1.5 : 1e9;
-      const double low = std::max(-most, 0.8 * limits.travel_min);
-      const double high = std::min(most, 0.8 * limits.travel_max);
+      const double reach = model.joints[i].is_rotary ? 1.5 : 1e9;
+      const double low = std::max(-reach, 0.8 * limits.travel_min);
+      const double high = std::min(reach, 0.8 * limits.travel_max);
       start[i] = draw.uniform(low, high);
       end[i] = std::clamp(start[i] + share * (high - low) * draw.uniform(-1, 1), low, high);
     }

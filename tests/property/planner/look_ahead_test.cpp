@@ -195,14 +195,14 @@ TEST(LookAhead, RefusesNothingThatRoundingMayKeepInsideTravel) {
   MachineModel model = limited(fork_machine(), -360, 360);
   model.rewind_policy = RewindPolicy::kRefuse;
   const JointVector start = joints_of(model, blocks[0]);
-  JointVector at = start, most = start;
+  JointVector at = start, largest = start;
   for (std::size_t n = 0; n <= blocks.size() / 2; ++n) {
     const int branch = std::abs(solve_block(model, blocks[n], 0, at)[4] - at[4]) < 0.1 ? 0 : 1;
-    at = most = solve_block(model, blocks[n], branch, at);
+    at = largest = solve_block(model, blocks[n], branch, at);
   }
   // The corner is 0.02 deg outside of travel, on a way that is rounded there by more.
-  const double sign = most[3] > start[3] ? 1 : -1;
-  const double end = most[3] - sign * units::rad_from_deg(0.02);
+  const double sign = largest[3] > start[3] ? 1 : -1;
+  const double end = largest[3] - sign * units::rad_from_deg(0.02);
   const double other = end - sign * units::rad_from_deg(200);
   model.joints[3].limits.travel_min = std::min(end, other);
   model.joints[3].limits.travel_max = std::max(end, other);

@@ -72,10 +72,10 @@ ProgramPath waver(ProgramPath path, int count, double max_deg,
                   const Vector3& centre = Vector3::UnitZ()) {
   std::mt19937 engine(7);
   std::uniform_real_distribution<double> share(-1, 1);
-  const double most = units::rad_from_deg(max_deg) / std::sqrt(2.0);
+  const double largest = units::rad_from_deg(max_deg) / std::sqrt(2.0);
   for (int n = 0; n < count; ++n) {
-    const double x = most * share(engine);
-    path.to(x, most * share(engine), centre);
+    const double x = largest * share(engine);
+    path.to(x, largest * share(engine), centre);
   }
   return path;
 }
@@ -189,17 +189,17 @@ TEST(PoleLinger, AWayOntoThePoleAndOffAgainRunsThroughHoweverLongItStays) {
 /// A block off the pole and back in a stay on it.
 struct Excursion {
   double off_deg, azimuth_deg;
-  int behind;  ///< so many of the 80 blocks of the stay
+  int after;  ///< so many of the 80 blocks of the stay
 };
 
 /// Onto the pole, a stay that wavers by 0.012 deg with an excursion, off on the other side.
 std::vector<ClBlock> stay_with(const Excursion& out) {
   ProgramPath path(1);
   for (int n = 12; n >= 0; --n) path.lean(0, n);
-  path = waver(path, out.behind, 0.012);
+  path = waver(path, out.after, 0.012);
   path.lean(out.azimuth_deg, out.off_deg);
-  if (out.behind == 80) path.lean(0, 0);
-  path = waver(path, 80 - out.behind, 0.012);
+  if (out.after == 80) path.lean(0, 0);
+  path = waver(path, 80 - out.after, 0.012);
   for (int n = 1; n <= 12; ++n) path.lean(180, n);
   return path.program();
 }
@@ -212,11 +212,11 @@ TEST(PoleLinger, ABlockOffThePoleAndBackCostsAStayNoTurn) {
   for (const Excursion& out :
        cases<Excursion>({{0.08, 90, 0}, {0.095, 0, 0}, {0.095, 45, 40}, {0.08, 90, 80}})) {
     SCOPED_TRACE(testing::Message() << out.off_deg << " deg off towards " << out.azimuth_deg
-                                    << " deg behind " << out.behind << " blocks");
+                                    << " deg behind " << out.after << " blocks");
     const double time_s = cut(model, stay_with(out)).duration_s();
     std::printf(
         "a block %.3f deg off towards %.0f deg, %d blocks ahead of it: %.3f s, on it %.3f s\n",
-        out.off_deg, out.azimuth_deg, out.behind, time_s, on_s);
+        out.off_deg, out.azimuth_deg, out.after, time_s, on_s);
     EXPECT_LT(time_s, 1.05 * on_s);
   }
 }
@@ -254,13 +254,14 @@ std::vector<ClBlock> linger(std::uint32_t seed) {
   };
   lean(uniform(0, 1) < 0.3 ? 0.01 : 5, 1);
   for (int section = 0; section < 8; ++section) {
-    const double step = std::pow(10.0, uniform(-4, 0.5)), most = std::pow(10.0, uniform(-3, -0.5));
+    const double step = std::pow(10.0, uniform(-4, 0.5)),
+                 largest = std::pow(10.0, uniform(-3, -0.5));
     const int count = static_cast<int>(uniform(1, 60));
     const int kind = static_cast<int>(uniform(0, 5));
     for (int n = 0; n < count; ++n) {
       if (kind != 1) azimuth += uniform(-1, 1) * (kind == 0 ? 3 : 0.3);
       if (kind == 2) azimuth = std::round(azimuth / 1.5) * 1.5;
-      lean(kind == 1 ? 0 : most * (kind == 3 ? 1 : uniform(0, 1)), step);
+      lean(kind == 1 ? 0 : largest * (kind == 3 ? 1 : uniform(0, 1)), step);
     }
     if (uniform(0, 1) < 0.5) continue;
     azimuth += uniform(-2, 2);

@@ -26,12 +26,12 @@ constexpr int kHalf = 600;  // blocks from either end to the pole
 /// that the tilt is 5 degrees off 200 mm behind it; ahead of that `before` blocks to and fro.
 std::vector<ClBlock> gently_over_the_pole(double offset_deg, int before = 0) {
   constexpr int kStroke = 100;
-  const double most = units::rad_from_deg(15), offset = units::rad_from_deg(offset_deg);
+  const double largest = units::rad_from_deg(15), offset = units::rad_from_deg(offset_deg);
   std::vector<ClBlock> blocks;
   for (int n = -kHalf - before; n <= kHalf; ++n) {
     const int ahead = std::max(0, -kHalf - n) % (2 * kStroke);
     const int at = std::max(-kHalf, n) - std::min(ahead, 2 * kStroke - ahead);
-    const double x = most * std::max(-1.0, n / static_cast<double>(kHalf));
+    const double x = largest * std::max(-1.0, n / static_cast<double>(kHalf));
     blocks.push_back(
         leaning(std::hypot(x, offset), std::atan2(offset, x), Vector3(kStep_mm * at, 0, 0)));
   }
@@ -88,15 +88,15 @@ TEST(PoleLookAhead, TakesTheBranchOnWhichTheTiltHasTravelFarBehindThePole) {
 
 /// Over the pole, then round it at 17 degrees by `turn_deg`.
 std::vector<ClBlock> over_and_round(double turn_deg) {
-  const double most = units::rad_from_deg(17);
+  const double largest = units::rad_from_deg(17);
   std::vector<ClBlock> blocks;
   for (int n = -60; n <= 60; ++n) {
-    const double x = most * n / 60.0;
+    const double x = largest * n / 60.0;
     blocks.push_back(leaning(std::abs(x), x < 0 ? 0 : units::rad_from_deg(180), Vector3(n, 0, 0)));
   }
   const int steps = static_cast<int>(std::abs(turn_deg) / 3);
   for (int n = 1; n <= steps; ++n) {
-    blocks.push_back(leaning(most, units::rad_from_deg(180 + turn_deg * n / steps),
+    blocks.push_back(leaning(largest, units::rad_from_deg(180 + turn_deg * n / steps),
                              Vector3(60 + 0.5 * n, 0, 0)));
   }
   number_and_end(blocks);

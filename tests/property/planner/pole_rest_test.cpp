@@ -42,14 +42,14 @@ class Program {
 };
 
 /// Axes drawn within `most_deg` of the pole.
-std::vector<ClBlock> waver(int count, double most_deg) {
+std::vector<ClBlock> waver(int count, double max_deg) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> share(-1, 1);
-  const double most = units::rad_from_deg(most_deg) / std::sqrt(2.0);
+  const double largest = units::rad_from_deg(max_deg) / std::sqrt(2.0);
   Program out;
   for (int n = 0; n < count; ++n) {
-    const double x = most * share(engine);
-    out.to(x, most * share(engine));
+    const double x = largest * share(engine);
+    out.to(x, largest * share(engine));
   }
   return out.whole();
 }

@@ -83,8 +83,8 @@ Drawn draw(int seed) {
     }
   }
   go_to(lean * (units::rad_from_deg(12) / lean.norm()), 60, 1);
-  const int behind = whole(0, 2) == 0 ? whole(1900, 2600) : whole(0, 300);
-  for (int n = 0; n < behind; ++n) put(lean, n % 40 < 20 ? 1 : -1);
+  const int after = whole(0, 2) == 0 ? whole(1900, 2600) : whole(0, 300);
+  for (int n = 0; n < after; ++n) put(lean, n % 40 < 20 ? 1 : -1);
   number_and_end(out.blocks);
   const int branch = whole(0, 1);
   out.start = solve_block(out.model, out.blocks[0], branch);
@@ -104,12 +104,12 @@ struct Played : StreamOutcome {
   std::vector<std::size_t> stalls;
 };
 
-enum class Told { kNothing, kStalls, kFinish };
+enum class Reported { kNothing, kStalls, kFinish };
 
 /// Blocks of `drawn`, the first `count` or all, in a manner drawn from `manner`; `marks`: of a run
 /// that is replayed.
-Played run(const Drawn& drawn, int manner, Told told, const std::vector<FeedMark>* marks = nullptr,
-           std::size_t count = 0) {
+Played run(const Drawn& drawn, int manner, Reported reported,
+           const std::vector<FeedMark>* marks = nullptr, std::size_t count = 0) {
   Played out;
   std::mt19937 random(static_cast<unsigned>(manner));
   const auto whole = [&](int a, int b) { return std::uniform_int_distribution<int>(a, b)(random); };
@@ -131,7 +131,7 @@ Played run(const Drawn& drawn, int manner, Told told, const std::vector<FeedMark
   };
   if (count == 0) count = drawn.blocks.size();
   for (std::size_t n = 0; n < count; ++n) {
-    if (told == Told::kStalls && n > 1 && planner.look() > 0 && whole(0, 30) == 0) {
+    if (reported == Reported::kStalls && n > 1 && planner.look() > 0 && whole(0, 30) == 0) {
       if (whole(0, 3) > 0) (void)planner.advance(writer);  // as planner_thread does
       for (int k = 0; k < 5 && planner.look() > 0; ++k) {
         out.stalls.push_back(n);
@@ -143,7 +143,7 @@ Played run(const Drawn& drawn, int manner, Told told, const std::vector<FeedMark
     if (manner != 0 && whole(0, 5) == 0) timed(n, [&] { (void)planner.advance(writer); });
     if (n % static_cast<std::size_t>(every) == 0) stream.read();
   }
-  if (told == Told::kFinish) {
+  if (reported == Reported::kFinish) {
     planner.finish();
     for (int n = 0; n < 50; ++n) {
       (void)planner.advance(writer);
@@ -160,7 +160,7 @@ TEST(PoleStreamDrawn, IsTheSameHoweverTheBlocksArriveAndNeverStuck) {
   int refused = 0;
   for (int seed = from; seed < from + count; ++seed) {
     const Drawn drawn = draw(seed);
-    const Played one = run(drawn, 0, Told::kNothing);
+    const Played one = run(drawn, 0, Reported::kNothing);
     refused += one.trace.last.status == PlanStatus::kRefused;
     if (one.excess_s > excess) {
       excess = one.excess_s;
@@ -170,7 +170,7 @@ TEST(PoleStreamDrawn, IsTheSameHoweverTheBlocksArriveAndNeverStuck) {
     EXPECT_EQ(one.stuck_at, 0U) << "stuck, seed " << seed << " exact stop "
                                 << (drawn.transition == Transition::kExactStop);
     for (int manner = 1; manner <= 3; ++manner) {
-      const Played other = run(drawn, 100 * seed + manner, Told::kNothing);
+      const Played other = run(drawn, 100 * seed + manner, Reported::kNothing);
       EXPECT_TRUE(are_same(one.trace, other.trace))
           << "differs, seed " << seed << " manner " << manner << " stuck at " << other.stuck_at;
     }
@@ -185,22 +185,24 @@ TEST(PoleStreamDrawn, ReplaysStalls) {
   int late = 0, changed = 0;
   for (int seed = from; seed < from + count; ++seed) {
     const Drawn drawn = draw(seed);
-    const Played undisturbed = run(drawn, 0, Told::kNothing);
+    const Played undisturbed = run(drawn, 0, Reported::kNothing);
     for (int manner = 1; manner <= 3; ++manner) {
-      const Played stalled = run(drawn, 100 * seed + manner, Told::kStalls);
+      const Played stalled = run(drawn, 100 * seed + manner, Reported::kStalls);
       if (stalled.stalls.empty()) continue;
       ++late;
       changed += !are_same(stalled.trace, undisturbed.trace);
-      const Played replayed = run(drawn, 0, Told::kNothing, &stalled.marks);
-      std::string told;
+      const Played replayed = run(drawn, 0, Reported::kNothing, &stalled.marks);
+      std::string reported;
       for (const FeedMark& mark : stalled.marks) {
         if (mark.looked_at > 0)
-          told += " {" + std::to_string(mark.sequence) + "," + std::to_string(mark.looked_at) + "}";
+          reported +=
+              " {" + std::to_string(mark.sequence) + "," + std::to_string(mark.looked_at) + "}";
       }
       EXPECT_TRUE(are_same(stalled.trace, replayed.trace))
           << "differs, seed " << seed << " manner " << manner << " exact stop "
-          << (drawn.transition == Transition::kExactStop) << told << " stuck " << stalled.stuck_at
-          << "/" << replayed.stuck_at << " rewinds " << stalled.trace.rewinds.size();
+          << (drawn.transition == Transition::kExactStop) << reported << " stuck "
+          << stalled.stuck_at << "/" << replayed.stuck_at << " rewinds "
+          << stalled.trace.rewinds.size();
     }
   }
   std::printf("stalled %d, of which %d changed the plan\n", late, changed);
@@ -217,8 +219,8 @@ TEST(PoleStreamDrawn, ReplaysWhatRanBeforeAStationWasGone) {
     std::mt19937 random(static_cast<unsigned>(seed));
     for (int manner = 1; manner <= 3; ++manner) {
       const std::size_t until = 10 + random() % (drawn.blocks.size() - 11);
-      const Played cut = run(drawn, 0, Told::kFinish, nullptr, until);
-      const Played replayed = run(drawn, 0, Told::kNothing, &cut.marks);
+      const Played cut = run(drawn, 0, Reported::kFinish, nullptr, until);
+      const Played replayed = run(drawn, 0, Reported::kNothing, &cut.marks);
       // Zones are compared: what the redundant joint does past the pole.
       std::size_t n = 0, m = 0;
       bool is_same = true;

@@ -20,9 +20,9 @@ namespace {
 
 /// Over the pole in one corner at rest, `behind` blocks behind it, leaning gently, none at the
 /// pole.
-std::vector<ClBlock> over(int behind, int ahead = 20) {
+std::vector<ClBlock> over(int after, int ahead = 20) {
   std::vector<ClBlock> blocks;
-  for (int n = -ahead; n <= behind; ++n) {
+  for (int n = -ahead; n <= after; ++n) {
     const double lean = units::rad_from_deg(10.0 * std::clamp(n / 20.0, -1.0, 1.0));
     const int at = n < 0 ? -(-n % 20) : (n % 200 < 100 ? n % 200 : 200 - n % 200);
     blocks.push_back(leaning(std::abs(lean), lean < 0 ? 0 : units::rad_from_deg(180),
@@ -113,10 +113,10 @@ TEST(PoleStream, LooksAtTheBeginOfAProgramBehindBlocksThatDoNotMove) {
 TEST(PoleStream, ReplaysAStallBehindAWayFromRestToRest) {
   int all_stalls = 0;
   for (const double side : {-1.0, 1.0}) {
-    for (std::size_t behind = 0; behind < 14; ++behind) {
+    for (std::size_t after = 0; after < 14; ++after) {
       for (const bool advances : {false, true}) {
         SCOPED_TRACE(testing::Message()
-                     << "side " << side << " behind " << behind << " advances " << advances);
+                     << "side " << side << " behind " << after << " advances " << advances);
         const auto blocks = over(60);
         MachineModel model = bench_machine();
         const int branch = solve_block(model, blocks[0], 0)[4] * side > 0 ? 0 : 1;
@@ -128,7 +128,7 @@ TEST(PoleStream, ReplaysAStallBehindAWayFromRestToRest) {
         int stalls = 0;
         for (std::size_t n = 0; n < blocks.size(); ++n) {
           const bool goes_on = stalled.offer(blocks[n]);
-          if (n == 21 + behind) {
+          if (n == 21 + after) {
             for (; stalls < 5 && stalled.planner.look() > 0; ++stalls) {
               if (advances) (void)stalled.planner.advance(stalled.writer);
               stalled.stall();

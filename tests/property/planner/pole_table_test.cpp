@@ -92,9 +92,9 @@ TEST(PoleTable, DenseBlocksOverThePoleAreCutWhateverTheirStep) {
     for (const double step_deg : {0.0005, 0.003, 0.005, 0.01, 0.05}) {
       for (const double offset_deg : {0.0, 0.005}) {
         SCOPED_TRACE(testing::Message() << model.name << " " << step_deg << " " << offset_deg);
-        const double most = 12 * step_deg, off = units::rad_from_deg(offset_deg);
+        const double largest = 12 * step_deg, off = units::rad_from_deg(offset_deg);
         std::vector<double> along{-1};
-        for (double at = -most; at < most; at += step_deg) along.push_back(at + 0.0001);
+        for (double at = -largest; at < largest; at += step_deg) along.push_back(at + 0.0001);
         along.push_back(1);
         std::vector<ClBlock> blocks;
         for (const double at_deg : along) {

@@ -38,9 +38,9 @@ class RandomPrograms {
   }
 
   /// A rotation of the workpiece by up to `most` rad about any axis.
-  [[nodiscard]] Eigen::Matrix3d rotation(double most) {
+  [[nodiscard]] Eigen::Matrix3d rotation(double largest) {
     const Vector3 about = Vector3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)).normalized();
-    const double angle = uniform(-most, most), c = std::cos(angle), s = std::sin(angle);
+    const double angle = uniform(-largest, largest), c = std::cos(angle), s = std::sin(angle);
     Eigen::Matrix3d cross;
     cross << 0, -about[2], about[1], about[2], 0, -about[0], -about[1], about[0], 0;
     return Eigen::Matrix3d::Identity() + s * cross + (1 - c) * cross * cross;

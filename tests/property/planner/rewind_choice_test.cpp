@@ -153,13 +153,13 @@ TEST(RewindChoice, StaysOnTheBranchWhereTheTiltHasNoTravelOnTheOther) {
 /// All of `blocks`, read every so many; where `stalls_behind` blocks have come and the planner
 /// waits for more it goes on without.
 StreamOutcome stream(const Case& one, Transition transition, std::size_t every,
-                     std::size_t stalls_behind, const std::vector<FeedMark>* replayed = nullptr) {
+                     std::size_t stalls_after, const std::vector<FeedMark>* replayed = nullptr) {
   BlockStream out(one.model, one.start, transition, replayed);
   for (std::size_t n = 0; n < one.blocks.size(); ++n) {
     if (replayed == nullptr && n == 1) out.stall();  // begins with a block
     if (!out.offer(one.blocks[n])) break;
     if (n % every == 0) out.read();
-    if (n >= stalls_behind && out.planner.look() > 0) out.stall();
+    if (n >= stalls_after && out.planner.look() > 0) out.stall();
   }
   return out.end();
 }

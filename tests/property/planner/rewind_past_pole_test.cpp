@@ -170,10 +170,10 @@ TEST(Rewind, IsNotNeededWhereTheOtherBranchLeadsOffThePole) {
         check(turned, trace, blocks, start, found);
         if (HasFatalFailure()) return;
         EXPECT_EQ(found.rewinds, 0);
-        double told = 0;
+        double reported = 0;
         for (const RelaxedAxis& relaxed_axis : trace.relaxed_axes)
-          told = std::max(told, relaxed_axis.deviation_rad);
-        EXPECT_GE(told, units::rad_from_deg(0.0099)) << "C was turned beside the pole";
+          reported = std::max(reported, relaxed_axis.deviation_rad);
+        EXPECT_GE(reported, units::rad_from_deg(0.0099)) << "C was turned beside the pole";
       }
     }
   }

@@ -58,9 +58,9 @@ std::vector<ClBlock> spiral(std::uint32_t seed, const Spiral& how) {
     if (how.turns_back && uniform(0, 1) < 0.01) sign = -sign;
     azimuth += sign * step;
     turned += step;
-    const double least = how.passes_pole ? -0.35 : units::rad_from_deg(3);
+    const double smallest = how.passes_pole ? -0.35 : units::rad_from_deg(3);
     tilt = how.passes_pole ? 0.3 * std::cos(0.4 * turned + seed) : tilt + uniform(-0.3, 0.3) * step;
-    tilt = std::clamp(tilt, least, units::rad_from_deg(40));
+    tilt = std::clamp(tilt, smallest, units::rad_from_deg(40));
   }
   end_program(blocks);
   return blocks;

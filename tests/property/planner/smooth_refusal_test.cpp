@@ -56,13 +56,13 @@ JointVector joints_near(const MachineModel& machine, const ClBlock& block,
                         const JointVector& reference) {
   const ToolPose pose{to_vector(block.tip_mm), to_vector(block.axis)};
   JointVector nearest = reference;
-  double least = 1e300;
+  double smallest = 1e300;
   for (int branch = 0; branch < branch_count(machine); ++branch) {
     const auto at = solve(machine, machine.tool_length_mm, pose, branch, reference);
     double off = 0;
     for (std::size_t i = 0; i < at.q.size(); ++i) off += std::abs(at.q[i] - reference[i]);
-    if (at.status == SolveStatus::kUnreachable || off > least) continue;
-    least = off;
+    if (at.status == SolveStatus::kUnreachable || off > smallest) continue;
+    smallest = off;
     nearest = at.q;
   }
   return nearest;

@@ -172,8 +172,9 @@ OnPlan draw_state(RandomPrograms& random, const Trace& trace, std::size_t piece)
   at.time = random.uniform(0, trace.times[piece].duration);
   if (random.chance(0.6)) return at;
   at.rate = random.uniform(0.05, 1);
-  const double most = std::min(1.0, std::sqrt(20 * (1 - at.rate)));
-  if (random.chance(0.5)) at.slope = random.uniform(-std::min(1.0, std::sqrt(20 * at.rate)), most);
+  const double steepest = std::min(1.0, std::sqrt(20 * (1 - at.rate)));
+  if (random.chance(0.5))
+    at.slope = random.uniform(-std::min(1.0, std::sqrt(20 * at.rate)), steepest);
   return at;
 }
 
@@ -198,7 +199,7 @@ void stop_from(const MachineModel& model, const Trace& trace, OnPlan at, StopKin
                Stops& stops) {
   const PathState begin = at.state(trace);
   if (begin.ds <= 1e-3) return;
-  const double least =
+  const double smallest =
       min_stopping_time(kind == StopKind::kFault ? by_fault_limits(model) : model,
                         trace.paths[at.piece], begin, trace.paths[at.piece].joints_begin);
   StopMargin authority;
@@ -212,7 +213,7 @@ void stop_from(const MachineModel& model, const Trace& trace, OnPlan at, StopKin
     time += law.duration();
   }
   ++stops.count;
-  stops.ratios.push_back(std::max(0.0, time - 2e-3) / least);
+  stops.ratios.push_back(std::max(0.0, time - 2e-3) / smallest);
 }
 
 /// Stops drawn on what the feed planner plans of hostile programs.

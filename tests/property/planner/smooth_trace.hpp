@@ -139,19 +139,19 @@ inline double distance_from(const std::vector<PathPiece>& programmed, std::uint6
     }
     return std::min({at(0.5 * (low + high)), at(0.0), at(1.0)});
   };
-  double least = min_on(programmed[sequence]);
+  double smallest = min_on(programmed[sequence]);
   double length = 0;
   for (std::size_t n = sequence; n-- > 0 && length < kBehind_mm; length += programmed[n].length) {
-    if (least <= enough) return least;
-    if (programmed[n].length > 0) least = std::min(least, min_on(programmed[n]));
+    if (smallest <= enough) return smallest;
+    if (programmed[n].length > 0) smallest = std::min(smallest, min_on(programmed[n]));
   }
   length = 0;
   for (std::size_t n = sequence + 1; n < programmed.size() && length < kAhead_mm; ++n) {
-    if (least <= enough) return least;
-    if (programmed[n].length > 0) least = std::min(least, min_on(programmed[n]));
+    if (smallest <= enough) return smallest;
+    if (programmed[n].length > 0) smallest = std::min(smallest, min_on(programmed[n]));
     length += programmed[n].length;
   }
-  return least;
+  return smallest;
 }
 
 }  // namespace meridian::test

@@ -135,10 +135,10 @@ TEST(StopMargin, KeepsTheLimitsAndWastesLittleFromAnywhere) {
           << " a " << use.a << " j " << use.j << " cycle " << cycle;
       largest_use = std::max({largest_use, use.v, use.a, use.j});
       if (is_by_feed || path.motion == MotionKind::kApproach) continue;
-      const double least = min_stopping_time(model, path, state, reference_at(path, state.s));
-      const double ratio = std::max(0.0, law.duration() - 2e-3) / least;
+      const double smallest = min_stopping_time(model, path, state, reference_at(path, state.s));
+      const double ratio = std::max(0.0, law.duration() - 2e-3) / smallest;
       largest_ratio = std::max(largest_ratio, ratio);
-      sum_ratio += law.duration() / least;
+      sum_ratio += law.duration() / smallest;
       ++stops;
       if (ratio > 1.25) ++slow;
     }

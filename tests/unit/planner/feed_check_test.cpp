@@ -140,11 +140,12 @@ TEST(FeedCheck, KnowsTheMotionOfALaw) {
 }
 
 /// b = (x - least)² + left over a cell of length 1: every derivative but that of the law is 0.
-FeedUse use_of_dip(double least, double left) {
+FeedUse use_of_dip(double smallest, double left) {
   FeedCell cell;
   cell.h = 1;
   for (CellSample& at : cell.at) at.max_b = 10;
-  return use_of(unit_limits(), cell, {least * least + left, -2 * least, 2 * (1 - least)});
+  return use_of(unit_limits(), cell,
+                {smallest * smallest + left, -2 * smallest, 2 * (1 - smallest)});
 }
 
 TEST(FeedCheck, SeesAStandstillBetweenTwoSamples) {

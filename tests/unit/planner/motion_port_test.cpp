@@ -119,7 +119,7 @@ TEST(MotionPort, RunsATailThatIsKeptWhateverIsPublishedAndTheWriterSeesItAtOnce)
   script.move(1, 20, false);
   script.move(2, 30, true);
   script.writer.publish();
-  EXPECT_EQ(script.reader.find_behind_tail(1), 0U);
+  EXPECT_EQ(script.reader.find_after_tail(1), 0U);
   EXPECT_EQ(script.run(), (Names{11, 12, 30}));
 }
 

@@ -118,8 +118,8 @@ void CellGrid::halve(double left, double ratio, int rounds) noexcept {
     for (std::size_t n = 0; n < drafts_.size(); ++n) {
       const Draft& draft = drafts_[n];
       const double before = n > 0 ? drafts_[n - 1].h : left;
-      const double behind = n + 1 < drafts_.size() ? drafts_[n + 1].h : draft.h;
-      const bool is_long = draft.h > ratio * before || draft.h > ratio * behind;
+      const double after = n + 1 < drafts_.size() ? drafts_[n + 1].h : draft.h;
+      const bool is_long = draft.h > ratio * before || draft.h > ratio * after;
       const std::size_t needed = finer_.size() + 2 + drafts_.size() - n;
       if (!is_long || needed > kDrafts) {
         finer_.push_back(draft);
@@ -154,7 +154,7 @@ PathFault CellGrid::finish() noexcept {
 }
 
 void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
-                      std::int64_t least) noexcept {
+                      std::int64_t smallest) noexcept {
   const auto begins_before = [&](const FeedCell& cell) {
     return cell.span < number || (cell.span == number && cell.x < x - kNoCell_mm);
   };
@@ -162,7 +162,7 @@ void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
   is_finished_ = true;
   drafts_.clear();
   waiting_count_ = 0;
-  const std::int64_t kept = std::max(first_, least);
+  const std::int64_t kept = std::max(first_, smallest);
   while (last_ > kept && !begins_before((*this)[last_ - 1])) --last_;
   double begin = 0;  // of the cell that ends at x
   if (last_ > first_) {
@@ -212,9 +212,9 @@ bool CellGrid::split(std::size_t draft) noexcept {
 PathFault CellGrid::make_cells() noexcept {
   std::size_t used = 0;
   while (used < drafts_.size() && last_ - first_ < settings_.kept_cells) {
-    const int behind = waiting_count_ - 1 - drafts_[used].waiting;
+    const int after = waiting_count_ - 1 - drafts_[used].waiting;
     const bool is_long_enough = last_ > 0 || drafts_.size() - used >= kMin;
-    if (!is_finished_ && (behind < kAhead || !is_long_enough)) break;
+    if (!is_finished_ && (after < kAhead || !is_long_enough)) break;
     fault_ = make_cell(drafts_[used]);
     if (fault_.kind == PathFault::Kind::kJump && split(used)) {
       fault_ = {};
@@ -260,25 +260,25 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
     if (k > 0) {
       const CellSample& last = cell.at[static_cast<std::size_t>(k - 1)];
       const double step = draft.h / FeedCell::kSteps;
-      const JointPlace before_place{values, last.d1, last.d2, last.d3};
-      const JointPlace place{here, at.d1, at.d2, at.d3};
+      const JointDerivatives before_values{values, last.d1, last.d2, last.d3};
+      const JointDerivatives here_values{here, at.d1, at.d2, at.d3};
       PathFault fault = check_turns(model_, values, last.d1, here, at.d1, step);
       if (!is_fault(fault)) {
-        fault = check_joins(model_, before_place, place, step);
+        fault = check_joins(model_, before_values, here_values, step);
       }
       if (has_boxes(model_) && !is_fault(fault)) {
-        fault = check_boxes(model_, tool_length_mm_, before_place, place, step);
+        fault = check_boxes(model_, tool_length_mm_, before_values, here_values, step);
       }
       if (is_fault(fault)) return fault;
     }
     values = here;
     // No step between where the machine rests, or a robot's cell ended, and here: a span that is
     // driven past a singular place and the next one may not agree.
-    const bool is_same_place = k == 0 && (last_ == 0 || model_.family == MachineFamily::kRobot);
+    const bool is_same_point = k == 0 && (last_ == 0 || model_.family == MachineFamily::kRobot);
     for (int i = 0; i < model_.joint_count; ++i) {
       const double jump = reference[i] - before[i];
       const double rounding = model_.joints[i].is_rotary ? kStep_rad : kStep_mm;
-      if (is_same_place && std::abs(jump) > rounding) return {PathFault::Kind::kJump, i, jump};
+      if (is_same_point && std::abs(jump) > rounding) return {PathFault::Kind::kJump, i, jump};
       if (model_.joints[i].is_rotary && std::abs(jump) > kLargestJump) {
         return {PathFault::Kind::kJump, i, jump};
       }

@@ -78,7 +78,8 @@ class CellGrid {
 
   /// Behind a fault, or where it is not waited for more: the path ends at `x` of `span`, the
   /// `number`th, whose cell there is shortened. Cells before `least` stand.
-  void end_at(const JointSpan& span, std::uint64_t number, double x, std::int64_t least) noexcept;
+  void end_at(const JointSpan& span, std::uint64_t number, double x,
+              std::int64_t smallest) noexcept;
 
   /// Makes the cells for which there was no room before drop_before().
   [[nodiscard]] PathFault make_cells() noexcept;

@@ -30,23 +30,23 @@ double rise_above(const Samples& f, int k) noexcept {
 /// the parabola through the three samples around it; beside the first or the last one, through the
 /// three there.
 double peak_of(const Samples& f) noexcept {
-  double most = 0;
-  for (int k = 0; k <= kCellSteps; ++k) most = std::max(most, std::abs(f[k]));
+  double largest = 0;
+  for (int k = 0; k <= kCellSteps; ++k) largest = std::max(largest, std::abs(f[k]));
   for (int k = 1; k < kCellSteps; ++k) {
     const double sign = f[k] < 0 ? -1 : 1;
     const Parabola about(sign * f[k - 1], sign * f[k], sign * f[k + 1]);
-    const double before = k == 1 ? 2 : 1, behind = k == kCellSteps - 1 ? 2 : 1;  // half samples
+    const double before = k == 1 ? 2 : 1, after = k == kCellSteps - 1 ? 2 : 1;  // half samples
     const bool has_top = about.bend > 0 && !(-about.slope > before * about.bend) &&
-                         !(about.slope > behind * about.bend);
-    if (has_top) most = std::max(most, about.top() + rise_above(f, k));
+                         !(about.slope > after * about.bend);
+    if (has_top) largest = std::max(largest, about.top() + rise_above(f, k));
   }
-  return most;
+  return largest;
 }
 
 /// Whether the law stands still inside the cell.
 bool comes_to_rest(const CellLaw& law, double second, double h) noexcept {
-  const bool has_least = second > 0 && law.slope < 0 && -law.slope < second * h;
-  return has_least && !(2 * law.b * second > law.slope * law.slope);
+  const bool has_minimum = second > 0 && law.slope < 0 && -law.slope < second * h;
+  return has_minimum && !(2 * law.b * second > law.slope * law.slope);
 }
 
 /// `b` is u̇² at the samples.

@@ -26,18 +26,18 @@ void FeedRaise::begin(double tool_length_mm) noexcept {
 }
 
 double FeedRaise::find_wanted(double asked) noexcept {
-  if (!is_replay_) return std::clamp(asked, 1.0, most_);
+  if (!is_replay_) return std::clamp(asked, 1.0, max_factor_);
   for (; next_mark_ < marks_.size(); ++next_mark_) {
     const FeedMark& mark = marks_[next_mark_];
     if (mark.looked_at > 0) continue;
     if (std::tie(mark.sequence, mark.span) > std::tie(sequence_, span_)) break;
-    replayed_ = std::clamp(mark.factor, 1.0, most_);
+    replayed_ = std::clamp(mark.factor, 1.0, max_factor_);
   }
   return replayed_;
 }
 
 FeedFactors FeedRaise::next(std::uint64_t sequence, double asked, double min_s) noexcept {
-  if (!(most_ > 1)) return now_;
+  if (!(max_factor_ > 1)) return now_;
   if (sequence > sequence_) {
     sequence_ = sequence;
     span_ = 0;

@@ -29,7 +29,9 @@ struct FeedFactors {
 class FeedRaise {
  public:
   explicit FeedRaise(const MachineModel& model)
-      : most_(model.max_feed_override), ramp_s_(model.override_ramp_s), reported_(kReported) {}
+      : max_factor_(model.max_feed_override),
+        ramp_s_(model.override_ramp_s),
+        reported_(kReported) {}
 
   /// From the next begin() on the factors are those of a run before, whatever is asked for. `marks`
   /// must stay.
@@ -61,7 +63,7 @@ class FeedRaise {
 
   [[nodiscard]] double find_wanted(double asked) noexcept;
 
-  double most_, ramp_s_;
+  double max_factor_, ramp_s_;
   FeedFactors now_;
   double lead_s_ = 0;  ///< that the label still has to be ahead of the plan
   bool is_at_rest_ = true;

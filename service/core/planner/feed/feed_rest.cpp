@@ -38,20 +38,20 @@ double duration_at(const FeedLimits& limits, double tight, const CellSample& at,
 
 double steady_b(const CellGrid& grid, const FeedLimits& limits, std::int64_t first,
                 std::int64_t last) noexcept {
-  double most = std::numeric_limits<double>::infinity();
+  double largest = std::numeric_limits<double>::infinity();
   for (std::int64_t cell = first; cell < last; ++cell) {
     for (int k = 0; k <= FeedCell::kSteps; k += FeedCell::kSteps / 2) {
       const CellSample& at = grid[cell].at[k];
-      most = std::min(most, at.max_b);
+      largest = std::min(largest, at.max_b);
       for (int i = 0; i < limits.count; ++i) {
         const double d2 = std::max(std::abs(at.d2[i]), kZeroDerivative);
         const double d3 = std::max(std::abs(at.d3[i]), kZeroDerivative);
-        most = std::min({most, kCurvatureShare * limits.acceleration[i] / d2,
-                         kCurvatureShare * std::pow(limits.jerk[i] / d3, 2.0 / 3.0)});
+        largest = std::min({largest, kCurvatureShare * limits.acceleration[i] / d2,
+                            kCurvatureShare * std::pow(limits.jerk[i] / d3, 2.0 / 3.0)});
       }
     }
   }
-  return most;
+  return largest;
 }
 
 RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_start,

@@ -20,16 +20,16 @@ double speed_square(const Vec3<Jet<3>>& x) noexcept {
 }
 
 /// The joints at one place and how fast tip and axis are there, by u.
-struct Place {
+struct SplineSample {
   Solution<Jet<3>> joints;
   double tip_square = 0, turn_square = 0;
 };
 
-Place place_on_spline(const MachineModel& model, const FeedSpan& span, double x,
-                      const JointVector& reference) noexcept {
+SplineSample sample_on_spline(const MachineModel& model, const FeedSpan& span, double x,
+                              const JointVector& reference) noexcept {
   const PathPiece& path = span.path;
   const auto pose = pose_on(path.spline, Jet<3>::variable(x));
-  Place out;
+  SplineSample out;
   out.joints = path.is_free_driven
                    ? joints_on_driven_spline(model, path, pose, Jet<3>::variable(x), reference)
                    : solve(model, path.tool_length_mm, pose, path.branch, reference);
@@ -41,10 +41,10 @@ Place place_on_spline(const MachineModel& model, const FeedSpan& span, double x,
   return out;
 }
 
-Place place_on(const MachineModel& model, const FeedSpan& span, double x,
-               const JointVector& reference) noexcept {
+SplineSample sample_on(const MachineModel& model, const FeedSpan& span, double x,
+                       const JointVector& reference) noexcept {
   const PathPiece& path = span.path;
-  if (path.kind == PathKind::kSpline) return place_on_spline(model, span, x, reference);
+  if (path.kind == PathKind::kSpline) return sample_on_spline(model, span, x, reference);
   const double share_rate = fraction_at(path, Jet<1>::variable(x)).derivative(1);
   return {joints_at(model, path, Jet<3>::variable(x), reference),
           square(tip_length(path) * share_rate), square(path.axis_turn * share_rate)};
@@ -55,7 +55,7 @@ Place place_on(const MachineModel& model, const FeedSpan& span, double x,
 PathFault take_sample(const MachineModel& model, const FeedLimits& limits, double feed_share,
                       const FeedSpan& span, double x, JointVector& reference,
                       CellSample& out) noexcept {
-  const auto [at, tip_square, turn_square] = place_on(model, span, x, reference);
+  const auto [at, tip_square, turn_square] = sample_on(model, span, x, reference);
   if (at.status == SolveStatus::kUnreachable) return {PathFault::Kind::kUnreachable, -1, 0};
   const double share = square(feed_share);
   double b = std::min(1 / kZeroDerivative, share * square(span.u_speed_mm_per_s));

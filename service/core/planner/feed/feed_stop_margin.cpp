@@ -97,33 +97,33 @@ StopMargin FeedStopMargin::max_in(const Caps& caps, std::int64_t cell) const noe
 
 StopMargin FeedStopMargin::find(const Caps& caps, std::int64_t cell,
                                 const Ends& ends) const noexcept {
-  const StopMargin most = max_in(caps, cell);
-  return lessen(caps, cell, ends, most, most);
+  const StopMargin largest = max_in(caps, cell);
+  return lessen(caps, cell, ends, largest, largest);
 }
 
 FeedStopMargin::Grant FeedStopMargin::find(Search& search, std::int64_t cell, const Ends& ends,
                                            bool is_slower_good) const noexcept {
-  const StopMargin most = max_in(search.caps, cell);
+  const StopMargin largest = max_in(search.caps, cell);
   StopMargin got;
   if (search.last.jerk > 0) {
-    const StopMargin start{std::min(most.accel, kMaxGrowth * search.last.accel),
-                           std::min(most.jerk, kMaxGrowth * search.last.jerk)};
-    got = lessen(search.caps, cell, ends, start, most);
+    const StopMargin start{std::min(largest.accel, kMaxGrowth * search.last.accel),
+                           std::min(largest.jerk, kMaxGrowth * search.last.jerk)};
+    got = lessen(search.caps, cell, ends, start, largest);
   }
-  if (!(got.jerk > 0)) got = lessen(search.caps, cell, ends, most, most);
+  if (!(got.jerk > 0)) got = lessen(search.caps, cell, ends, largest, largest);
   search.last = got;
   if (got.jerk > 0) return {got, kAnyVelocity};
   if (!is_slower_good) return {};
   for (const double rate : kRates) {
     const Ends slower = ends.at_rate(rate);
-    got = lessen(search.caps, cell, slower, most, most);
+    got = lessen(search.caps, cell, slower, largest, largest);
     if (got.jerk > 0) return {got, std::min(slower.begin.ds, slower.end.ds)};
   }
   return {};
 }
 
 StopMargin FeedStopMargin::lessen(const Caps& caps, std::int64_t cell, const Ends& from,
-                                  StopMargin now, const StopMargin& most) const noexcept {
+                                  StopMargin now, const StopMargin& largest) const noexcept {
   for (int round = 0; round < kMarginRounds; ++round) {
     const double depth = std::max(depth_of(from.begin, now.jerk), depth_of(from.end, now.jerk));
     now.accel = std::min(now.accel, 1.02 * depth);
@@ -144,7 +144,7 @@ StopMargin FeedStopMargin::lessen(const Caps& caps, std::int64_t cell, const End
       now.jerk *= by;
       if (cause.by_depth > 0.3 * rest) now.accel *= by;
     }
-    if (now.jerk < kHopeless * most.jerk || now.accel < kHopeless * most.accel) break;
+    if (now.jerk < kHopeless * largest.jerk || now.accel < kHopeless * largest.accel) break;
     if (now.accel < kEasing * std::max(-from.begin.dds, -from.end.dds)) break;
   }
   return {};
@@ -185,7 +185,7 @@ bool FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, const PathStat
   const StopLaw law(begin, authority);
   const double rest = begin.s + law.distance();
   const double deepest = begin.ds + 0.5 * begin.dds * begin.dds / authority.jerk;
-  const double most = largest_stop_product(deepest, authority.accel, authority.jerk);
+  const double largest = largest_stop_product(deepest, authority.accel, authority.jerk);
   PathState from = begin, to = begin;
   double s = 0;  // begin of the cell
   int n = 0;
@@ -212,7 +212,7 @@ bool FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, const PathStat
     }
     const double speed = std::sqrt(v2), v3 = v2 * speed;
     const double sinking =
-        3 * std::min(most, speed * std::max(authority.accel, by_rate - from.dds));
+        3 * std::min(largest, speed * std::max(authority.accel, by_rate - from.dds));
     add_use(caps, k, authority, {v2, v3, rising, sinking, 3 * speed * rising}, use);
     s += here.h;
     use.farthest = std::max(use.farthest, k);
@@ -232,9 +232,9 @@ void FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, const StopMarg
   const Values bend_down = at.d2.up * m.sinking_v + at.d2.down * m.rising_v + at.d3.down * m.v3;
   const Values jerk = (at.rate * authority.jerk + bend_up.max(bend_down)) * caps.jerk;
   // Beside the pole rounding shows in third differences of a stop as in those of the plan.
-  const double most = jerk.maxCoeff() / (*grid_)[cell].made_tight;
-  if (most <= use.jerk) return;
-  use.jerk = most;
+  const double largest = jerk.maxCoeff() / (*grid_)[cell].made_tight;
+  if (largest <= use.jerk) return;
+  use.jerk = largest;
   use.cell = cell;
   use.motion = m;
 }
@@ -244,7 +244,7 @@ FeedStopMargin::Cause FeedStopMargin::cause_of(const Caps& caps, const Use& use)
   const CellBound& at = here.bound;
   const Motion& m = use.motion;
   Cause cause;
-  double most = 0;
+  double largest = 0;
   for (int i = 0; i < count_; ++i) {
     const double depth_up = at.d2.down[i] * m.sinking_v + at.d2.up[i] * m.rising_v;
     const double depth_down = at.d2.up[i] * m.sinking_v + at.d2.down[i] * m.rising_v;
@@ -252,8 +252,8 @@ FeedStopMargin::Cause FeedStopMargin::cause_of(const Caps& caps, const Use& use)
     const bool is_up = depth_up + speed_up > depth_down + speed_down;
     const double depth = is_up ? depth_up : depth_down, speed = is_up ? speed_up : speed_down;
     const double per_jerk = caps.jerk[i] / here.made_tight;
-    if ((depth + speed) * per_jerk <= most) continue;
-    most = (depth + speed) * per_jerk;
+    if ((depth + speed) * per_jerk <= largest) continue;
+    largest = (depth + speed) * per_jerk;
     cause = {depth * per_jerk, speed * per_jerk};
   }
   return cause;

@@ -84,7 +84,7 @@ class FeedStopMargin {
   [[nodiscard]] StopMargin max_in(const Caps& caps, std::int64_t cell) const noexcept;
   /// `now` or less of it, that all stops from `from` may use; 0: there is none.
   [[nodiscard]] StopMargin lessen(const Caps& caps, std::int64_t cell, const Ends& from,
-                                  StopMargin now, const StopMargin& most) const noexcept;
+                                  StopMargin now, const StopMargin& largest) const noexcept;
   /// Whether a stop from `begin` passes the speed that `cell` allows before its s̈ is down to zero.
   [[nodiscard]] static bool rises_too_far(const FeedCell& cell, const PathState& begin,
                                           double jerk) noexcept;

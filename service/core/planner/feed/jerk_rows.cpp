@@ -22,16 +22,16 @@ FilterTerm filter_term(const FeedLimits& limits, double d1, double bar) noexcept
 }  // namespace
 
 void bound_slope(const FeedLimits& limits, JerkCell& at) noexcept {
-  const CellSample& place = at.cell->at[0];
+  const CellSample& sample = at.cell->at[0];
   at.max_slope = std::numeric_limits<double>::infinity();
   for (int j = 0; j < limits.count; ++j) {
-    const double d1 = std::abs(place.d1[j]);
+    const double d1 = std::abs(sample.d1[j]);
     const double left = limits.acceleration[j] * at.accel_share -
                         filter_term(limits, d1, at.bar[0]).fixed +
-                        std::abs(place.d2[j]) * at.max_b[0];
-    const double most = 2 * left / std::max(d1, kTiniest);
-    if (most >= at.max_slope) continue;
-    at.max_slope = most;
+                        std::abs(sample.d2[j]) * at.max_b[0];
+    const double largest = 2 * left / std::max(d1, kTiniest);
+    if (largest >= at.max_slope) continue;
+    at.max_slope = largest;
     at.slope_joint = j;
   }
 }
@@ -47,14 +47,14 @@ void JerkRows::add_pair(const JerkCoefficients& value, const JerkCoefficients& r
 }
 
 void JerkRows::add_acceleration(const FeedLimits& limits, const JerkCell& at) noexcept {
-  const CellSample& place = at.cell->at[0];
+  const CellSample& sample = at.cell->at[0];
   for (int j = 0; j < limits.count; ++j) {
-    const double d1 = place.d1[j], d2 = place.d2[j];
+    const double d1 = sample.d1[j], d2 = sample.d2[j];
     const FilterTerm filter = filter_term(limits, d1, at.bar[0]);
     const double limit = limits.acceleration[j] * at.accel_share - filter.fixed;
-    const double most =
+    const double largest =
         0.5 * std::abs(d1) * at.max_slope + (std::abs(d2) + filter.per_b) * at.max_b[0];
-    if (most <= limit && j != at.slope_joint) continue;
+    if (largest <= limit && j != at.slope_joint) continue;
     JerkCoefficients value{}, rest{};
     for (std::size_t t = 0; t < 3; ++t) {
       value[t] = 0.5 * d1 * at.slope[t] + d2 * at.b[t];
@@ -65,55 +65,56 @@ void JerkRows::add_acceleration(const FeedLimits& limits, const JerkCell& at) no
 }
 
 void JerkRows::add_jerk(const FeedLimits& limits, const JerkCell& at) noexcept {
-  std::array<Place, 3> places;
+  std::array<RowSample, 3> samples;
   const double h = at.cell->h;
   for (std::size_t p = 0; p < 3; ++p) {
-    Place& place = places[p];
+    RowSample& sample = samples[p];
     const double x = 0.5 * static_cast<double>(p) * h;
     for (std::size_t t = 0; t < 3; ++t) {
-      place.bend[t] = (at.end[t] - at.slope[t]) / h;
-      place.slope[t] = at.slope[t] + place.bend[t] * x;
-      place.b[t] = at.b[t] + at.slope[t] * x + 0.5 * place.bend[t] * x * x;
+      sample.bend[t] = (at.end[t] - at.slope[t]) / h;
+      sample.slope[t] = at.slope[t] + sample.bend[t] * x;
+      sample.b[t] = at.b[t] + at.slope[t] * x + 0.5 * sample.bend[t] * x * x;
     }
-    place.max_b = at.max_b[p];
-    place.bar = at.bar[p];
-    place.at = &at.cell->at[p * FeedCell::kSteps / 2];
+    sample.max_b = at.max_b[p];
+    sample.bar = at.bar[p];
+    sample.at = &at.cell->at[p * FeedCell::kSteps / 2];
   }
-  places[0].max_slope = at.max_slope;
-  places[1].max_slope = std::max(at.max_slope, at.max_end);
-  places[2].max_slope = at.max_end;
+  samples[0].max_slope = at.max_slope;
+  samples[1].max_slope = std::max(at.max_slope, at.max_end);
+  samples[2].max_slope = at.max_end;
 
   // Largest |b''|, which is the same all over the cell, and by which row.
   double max_bend = std::numeric_limits<double>::infinity();
-  std::size_t bend_place = 0;
+  std::size_t bend_sample = 0;
   int bend_joint = -1;
   for (std::size_t p = 0; p < 3; ++p) {
-    const Place& place = places[p];
-    const double per_root = 1.5 * at.jerk_share / std::sqrt(place.bar);
+    const RowSample& sample = samples[p];
+    const double per_root = 1.5 * at.jerk_share / std::sqrt(sample.bar);
     for (int j = 0; j < limits.count; ++j) {
-      const double most = (limits.jerk[j] * per_root + std::abs(place.at->d3[j]) * place.max_b +
-                           1.5 * std::abs(place.at->d2[j]) * place.max_slope) /
-                          std::max(0.5 * std::abs(place.at->d1[j]), kTiniest);
-      if (most >= max_bend) continue;
-      max_bend = most;
-      bend_place = p;
+      const double largest =
+          (limits.jerk[j] * per_root + std::abs(sample.at->d3[j]) * sample.max_b +
+           1.5 * std::abs(sample.at->d2[j]) * sample.max_slope) /
+          std::max(0.5 * std::abs(sample.at->d1[j]), kTiniest);
+      if (largest >= max_bend) continue;
+      max_bend = largest;
+      bend_sample = p;
       bend_joint = j;
     }
   }
   for (std::size_t p = 0; p < 3; ++p) {
-    const Place& place = places[p];
-    const double root = std::sqrt(place.bar);
+    const RowSample& sample = samples[p];
+    const double root = std::sqrt(sample.bar);
     for (int j = 0; j < limits.count; ++j) {
       const double jerk = limits.jerk[j] * at.jerk_share;
-      const double d1 = place.at->d1[j], d2 = place.at->d2[j], d3 = place.at->d3[j];
-      const double limit = 1.5 * jerk / root, per_b = jerk / (2 * place.bar * root);
-      const double most = (std::abs(d3) + per_b) * place.max_b +
-                          1.5 * std::abs(d2) * place.max_slope + 0.5 * std::abs(d1) * max_bend;
-      if (most <= limit && (p != bend_place || j != bend_joint)) continue;
+      const double d1 = sample.at->d1[j], d2 = sample.at->d2[j], d3 = sample.at->d3[j];
+      const double limit = 1.5 * jerk / root, per_b = jerk / (2 * sample.bar * root);
+      const double largest = (std::abs(d3) + per_b) * sample.max_b +
+                             1.5 * std::abs(d2) * sample.max_slope + 0.5 * std::abs(d1) * max_bend;
+      if (largest <= limit && (p != bend_sample || j != bend_joint)) continue;
       JerkCoefficients value{}, rest{};
       for (std::size_t t = 0; t < 3; ++t) {
-        value[t] = d3 * place.b[t] + 1.5 * d2 * place.slope[t] + 0.5 * d1 * place.bend[t];
-        rest[t] = per_b * place.b[t];
+        value[t] = d3 * sample.b[t] + 1.5 * d2 * sample.slope[t] + 0.5 * d1 * sample.bend[t];
+        rest[t] = per_b * sample.b[t];
       }
       add_pair(value, rest, limit);
     }

@@ -49,7 +49,7 @@ class JerkRows {
 
  private:
   /// b, b' and b'' at a place as combinations of the coefficients, and their largest values.
-  struct Place {
+  struct RowSample {
     JerkCoefficients b{}, slope{}, bend{};
     double max_b = 0, max_slope = 0, bar = 0;
     const CellSample* at = nullptr;

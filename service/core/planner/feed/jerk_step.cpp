@@ -32,10 +32,10 @@ void JerkStep::set_up(const JerkProblem& problem) noexcept {
   cells_ = problem.cells;
   for (int i = 0; i < cells_; ++i) h_[i] = grid_[problem.first + i].h;
   for (int k = 0; k <= cells_; ++k) {
-    const double before = h_[std::max(k - 1, 0)], behind = h_[std::min(k, cells_ - 1)];
-    left_[k] = behind / (before + behind);
-    right_[k] = before / (before + behind);
-    rise_[k] = 2 / (before + behind);
+    const double before = h_[std::max(k - 1, 0)], after = h_[std::min(k, cells_ - 1)];
+    left_[k] = after / (before + after);
+    right_[k] = before / (before + after);
+    rise_[k] = 2 / (before + after);
   }
   bar_[0] = problem.bar_knots[0];
   bar_[cells_ + 1] = problem.bar_knots[cells_];
@@ -96,7 +96,7 @@ JerkCell JerkStep::describe(const JerkProblem& problem, int i) const noexcept {
 
 void JerkStep::set_up_cells(const JerkProblem& problem) noexcept {
   JerkCell at = describe(problem, 0);
-  places_ = 0;
+  sample_count_ = 0;
   for (int i = 0; i < cells_; ++i) {
     JerkCell next;
     if (i + 1 < cells_) next = describe(problem, i + 1);
@@ -106,7 +106,7 @@ void JerkStep::set_up_cells(const JerkProblem& problem) noexcept {
     for (int row = 0; row < packs * kLanes; ++row) {
       put_row(i, row, row < found_.count() ? found_[row] : JerkRow{{}, 1});
     }
-    places_ += packs * kLanes;
+    sample_count_ += packs * kLanes;
     for (int t = 0; t < 3; ++t) middle_[i][t] = at.middle[t] * bar_[i + t];
     at = next;
   }
@@ -115,7 +115,7 @@ void JerkStep::set_up_cells(const JerkProblem& problem) noexcept {
 void JerkStep::start() noexcept {
   double time = 0;
   for (int i = 0; i < cells_; ++i) time += h_[i] / std::sqrt(std::max(middle_of(i, c_), 1e-9));
-  const double centre = time / places_;
+  const double centre = time / sample_count_;
   for (int i = 0; i < cells_; ++i) {
     CellRows& rows = rows_[i];
     for (int p = 0; p < rows.packs; ++p) {
@@ -283,7 +283,7 @@ void JerkStep::take_step() noexcept {
 bool JerkStep::solve(const JerkProblem& problem) noexcept {
   set_up(problem);
   start();
-  const double rows = places_;
+  const double rows = sample_count_;
   std::array<double, kRounds> history{};
   for (round_ = 0; round_ < kRounds; ++round_) {
     if (!assemble()) return false;

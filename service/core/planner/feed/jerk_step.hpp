@@ -94,7 +94,7 @@ class JerkStep {
   const CellGrid& grid_;
   FeedLimits limits_;
   int cells_ = 0, round_ = 0;
-  int places_ = 0;  ///< for rows, those that fill up a pack included
+  int sample_count_ = 0;  ///< for rows, those that fill up a pack included
   double time_ = 0, gap_ = 0, primal_ = 0, dual_ = 0;
   double step_primal_ = 0, step_dual_ = 0;
   Values h_, left_, right_, rise_;  ///< spline: b_k = left c_k + right c_{k+1}, b'_k = rise (..)

@@ -23,7 +23,7 @@ struct Sample {
   JointVector joints{};
   LimitedVector q, d1, d2, d3;  ///< filled as far as limited_count()
 
-  [[nodiscard]] JointPlace place() const noexcept { return {q, d1, d2, d3}; }
+  [[nodiscard]] JointDerivatives derivatives() const noexcept { return {q, d1, d2, d3}; }
 
   void set(int i, const Jet<3>& x) noexcept {
     q[i] = x.derivative(0);
@@ -66,11 +66,11 @@ double bound(double a, double b, double c) noexcept {
 
 /// What moving along the path asks of the joint that it asks most of: 1 / (s̈ that is possible).
 double hardness(const MachineModel& model, const LimitedVector& d1) noexcept {
-  double most = 0;
+  double hardest = 0;
   for (int i = 0; i < limited_count(model); ++i) {
-    most = std::max(most, std::abs(d1[i]) / limited_spec(model, i).limits.acceleration);
+    hardest = std::max(hardest, std::abs(d1[i]) / limited_spec(model, i).limits.acceleration);
   }
-  return most;
+  return hardest;
 }
 
 double axis_noise(const MachineModel& model, const PathPiece& piece, double begin,
@@ -102,8 +102,8 @@ PathFault check_turns(const MachineModel& model, const LimitedVector& a, const L
   return {};
 }
 
-PathFault check_joins(const MachineModel& model, const JointPlace& a, const JointPlace& b,
-                      double h) noexcept {
+PathFault check_joins(const MachineModel& model, const JointDerivatives& a,
+                      const JointDerivatives& b, double h) noexcept {
   if (model.family != MachineFamily::kRobot) return {};
   for (int i = 0; i < model.joint_count; ++i) {
     const double by = b.q[i] - a.q[i];
@@ -121,8 +121,8 @@ PathFault check_joins(const MachineModel& model, const JointPlace& a, const Join
   return {};
 }
 
-PathFault check_keep_out(const MachineModel& model, const JointPlace& a, const JointPlace& b,
-                         double h) noexcept {
+PathFault check_keep_out(const MachineModel& model, const JointDerivatives& a,
+                         const JointDerivatives& b, double h) noexcept {
   JointVector from{}, to{}, off{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.joint_count); ++i) {
     from[i] = a.q[i];
@@ -136,12 +136,13 @@ PathFault check_keep_out(const MachineModel& model, const JointPlace& a, const J
   return box < 0 ? PathFault{} : PathFault{PathFault::Kind::kKeepOut, -1, 1.0 * box};
 }
 
-PathFault check_tip_box(const MachineModel& model, double tool_length_mm, const JointPlace& a,
-                        const JointPlace& b, double h) noexcept {
-  const auto tip_of = [&](const JointPlace& place) {
+PathFault check_tip_box(const MachineModel& model, double tool_length_mm, const JointDerivatives& a,
+                        const JointDerivatives& b, double h) noexcept {
+  const auto tip_of = [&](const JointDerivatives& derivatives) {
     Joints<Jet<3>> q;
     for (std::size_t i = 0; i < q.size(); ++i) {
-      q[i] = Jet<3>::from_derivatives({place.q[i], place.d1[i], place.d2[i], place.d3[i]});
+      q[i] = Jet<3>::from_derivatives(
+          {derivatives.q[i], derivatives.d1[i], derivatives.d2[i], derivatives.d3[i]});
     }
     return tip_over_base(model, tool_length_mm, q);
   };
@@ -160,8 +161,8 @@ PathFault check_tip_box(const MachineModel& model, double tool_length_mm, const 
   return {};
 }
 
-PathFault check_boxes(const MachineModel& model, double tool_length_mm, const JointPlace& a,
-                      const JointPlace& b, double h) noexcept {
+PathFault check_boxes(const MachineModel& model, double tool_length_mm, const JointDerivatives& a,
+                      const JointDerivatives& b, double h) noexcept {
   PathFault fault;
   if (!model.keep_out.empty()) fault = check_keep_out(model, a, b, h);
   if (model.tip_box.is_set && !is_fault(fault)) {
@@ -196,9 +197,11 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
       }
       PathFault fault = check_turns(model, at[k - 1].q, at[k - 1].d1, at[k].q, at[k].d1, h / 2);
       if (!is_fault(fault)) fault = check_travel(model, at[k].q);
-      if (!is_fault(fault)) fault = check_joins(model, at[k - 1].place(), at[k].place(), h / 2);
+      if (!is_fault(fault))
+        fault = check_joins(model, at[k - 1].derivatives(), at[k].derivatives(), h / 2);
       if (is_boxed && !is_fault(fault)) {
-        fault = check_boxes(model, piece.tool_length_mm, at[k - 1].place(), at[k].place(), h / 2);
+        fault = check_boxes(model, piece.tool_length_mm, at[k - 1].derivatives(),
+                            at[k].derivatives(), h / 2);
       }
       if (fault.kind != PathFault::Kind::kNone) return fault;
     }
@@ -207,9 +210,9 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
       cell.d2[i] = bound(at[0].d2[i], at[1].d2[i], at[2].d2[i]);
       cell.d3[i] = bound(at[0].d3[i], at[1].d3[i], at[2].d3[i]);
     }
-    double least = hardness(model, at[0].d1);
-    for (int k = 1; k <= 2; ++k) least = std::min(least, hardness(model, at[k].d1));
-    if (least > 0) coarseness_ = std::max(coarseness_, hardness(model, cell.d1) / least);
+    double smallest = hardness(model, at[0].d1);
+    for (int k = 1; k <= 2; ++k) smallest = std::min(smallest, hardness(model, at[k].d1));
+    if (smallest > 0) coarseness_ = std::max(coarseness_, hardness(model, cell.d1) / smallest);
     cell.share_rate = bound(at[0].share_rate, at[1].share_rate, at[2].share_rate);
     cell.noise_rad = axis_noise(model, piece, cell.begin, cell.end);
   }

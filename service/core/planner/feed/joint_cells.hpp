@@ -86,7 +86,7 @@ class CellTable {
                                     const LimitedVector& db, double h) noexcept;
 
 /// Value and derivatives of everything that has limits at one place of a path.
-struct JointPlace {
+struct JointDerivatives {
   const LimitedVector &q, &d1, &d2, &d3;
 };
 
@@ -95,21 +95,23 @@ struct JointPlace {
 /// with there, and beside it turns at once, by half a turn where the path goes straight through.
 /// Machines of other families pass: their one singular place is the pole, which the path is cut
 /// for.
-[[nodiscard]] PathFault check_joins(const MachineModel& model, const JointPlace& a,
-                                    const JointPlace& b, double h) noexcept;
+[[nodiscard]] PathFault check_joins(const MachineModel& model, const JointDerivatives& a,
+                                    const JointDerivatives& b, double h) noexcept;
 
 /// Whether joints stay out of every keep-out box from `a` to `b`, `h` apart: they are no farther
 /// beside the straight line between both than h²/8 times their second derivative there.
-[[nodiscard]] PathFault check_keep_out(const MachineModel& model, const JointPlace& a,
-                                       const JointPlace& b, double h) noexcept;
+[[nodiscard]] PathFault check_keep_out(const MachineModel& model, const JointDerivatives& a,
+                                       const JointDerivatives& b, double h) noexcept;
 
 /// Whether the tip stays inside of its box from `a` to `b`, `h` apart.
 [[nodiscard]] PathFault check_tip_box(const MachineModel& model, double tool_length_mm,
-                                      const JointPlace& a, const JointPlace& b, double h) noexcept;
+                                      const JointDerivatives& a, const JointDerivatives& b,
+                                      double h) noexcept;
 
 /// check_keep_out() and check_tip_box(), for a machine that has one of them.
 [[nodiscard]] PathFault check_boxes(const MachineModel& model, double tool_length_mm,
-                                    const JointPlace& a, const JointPlace& b, double h) noexcept;
+                                    const JointDerivatives& a, const JointDerivatives& b,
+                                    double h) noexcept;
 /// Whether there is anything for check_boxes() to look at.
 [[nodiscard]] inline bool has_boxes(const MachineModel& model) noexcept {
   return !model.keep_out.empty() || model.tip_box.is_set;

@@ -38,7 +38,7 @@ double LegFeed::plan(const Leg& leg, std::span<const JointCell> cells, double le
                      Staging& out, JointVector& joints) noexcept {
   PathPiece piece = leg.path;
   piece.joints_begin = joints_at(model_, piece, 0.0, joints).q;
-  place_cells(leg, cells);
+  set_cells(leg, cells);
   feed_.begin(joints, piece.branch, piece.tool_length_mm);
   const Staging::Mark mark = out.mark();
   piece.index = out.first_index + static_cast<std::uint64_t>(out.path_count);
@@ -67,7 +67,7 @@ double LegFeed::time_over(const Leg& leg, const JointCell& cell) const noexcept 
   return slowest * (cell.end - cell.begin);
 }
 
-void LegFeed::place_cells(const Leg& leg, std::span<const JointCell> cells) noexcept {
+void LegFeed::set_cells(const Leg& leg, std::span<const JointCell> cells) noexcept {
   double whole = 0;
   for (const JointCell& cell : cells) whole += time_over(leg, cell);
   const double step = std::clamp(kCell_s, whole / kMaxFeedCells, whole / kMinLegCells);

@@ -40,7 +40,7 @@ class LegFeed {
   };
 
   /// Places the ends of cells on the leg; there is at least one cell.
-  void place_cells(const Leg& leg, std::span<const JointCell> cells) noexcept;
+  void set_cells(const Leg& leg, std::span<const JointCell> cells) noexcept;
   [[nodiscard]] double time_over(const Leg& leg, const JointCell& cell) const noexcept;
   /// Pushes all cells, and stages the windows that make room for them.
   [[nodiscard]] bool push_cells(const Leg& leg, Times& times, Staging& out) noexcept;

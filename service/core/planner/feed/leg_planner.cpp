@@ -76,7 +76,7 @@ PathFault LegPlanner::plan(const Leg& leg, Staging& out, JointVector& joints) no
                pose_in_machine(model_, pose_at(leg.path, leg.path.length)).tip.norm());
   caps_ = planned_caps(model_, reach);
   fault_caps_ = fault_caps(model_, reach);
-  place_nodes(leg.path);
+  set_nodes(leg.path);
   JointVector at_end = joints;
   if (const auto fault = measure(leg, at_end); fault.kind != PathFault::Kind::kNone) return fault;
   find_fastest_runs(leg);
@@ -101,17 +101,17 @@ bool LegPlanner::plan_feed(const Leg& leg, Staging& out, JointVector& joints) no
 PathFault LegPlanner::stage_runs(const Leg& leg, Staging& out, JointVector& joints) noexcept {
   // The way back gives the runs last to first: turn it round in place.
   int runs = 0;
-  std::array<int, kMaxNodes> way;
-  for (int n = node_count_ - 1; n > 0; n = nodes_[n].from) way[runs++] = n;
+  std::array<int, kMaxNodes> route;
+  for (int n = node_count_ - 1; n > 0; n = nodes_[n].from) route[runs++] = n;
   for (int n = runs - 1; n >= 0; --n) {
-    const Node& to = nodes_[way[n]];
+    const Node& to = nodes_[route[n]];
     const PathFault fault = stage_run(leg, nodes_[to.from], to, out, joints);
     if (is_fault(fault)) return fault;
   }
   return {};
 }
 
-void LegPlanner::place_nodes(const PathPiece& path) noexcept {
+void LegPlanner::set_nodes(const PathPiece& path) noexcept {
   const double turn = path.axis_turn;
   node_count_ = 0;
   const auto add = [&](double at) {

@@ -46,7 +46,7 @@ class LegPlanner {
     bool by_azimuth = false;   ///< how the piece from there runs
   };
 
-  void place_nodes(const PathPiece& path) noexcept;
+  void set_nodes(const PathPiece& path) noexcept;
   [[nodiscard]] PathFault append_cells(CellTable& table, const PathPiece& path, double begin,
                                        double end, int cells, JointVector& joints) noexcept;
   [[nodiscard]] PathFault measure(const Leg& leg, JointVector& joints) noexcept;

@@ -67,9 +67,9 @@ PathFault RestToRestPlanner::Workspace::rewind(const ClBlock& block, const PathF
                        to.joints[redundant_joint(model)] - from,
                        model.rewind_retract_mm};
       if (trial != nullptr) return {};
-      const PathFault behind = router.route(block, next, staging);
+      const PathFault after = router.route(block, next, staging);
       if (awaits_blocks()) return {};
-      if (!is_fault(behind)) {
+      if (!is_fault(after)) {
         ++next.window;
         return {};
       }

@@ -17,10 +17,10 @@ constexpr std::size_t kMaxTail = MotionReader::kMaxDrops - 8;
 /// Where cells are short a window keeps more of them: planning it never takes long beside the
 /// motion that it yields.
 int RollingFeed::cells_to_keep(const Plan& plan) const noexcept {
-  const int most = std::min(2 * settings_.commit_cells, plan.cells() - settings_.commit_cells);
+  const int largest = std::min(2 * settings_.commit_cells, plan.cells() - settings_.commit_cells);
   int kept = std::min(settings_.commit_cells, plan.cells());
   double time = 0;
-  for (int k = 0; k < kept || (kept < most && time < settings_.commit_s); ++k) {
+  for (int k = 0; k < kept || (kept < largest && time < settings_.commit_s); ++k) {
     time += grid_[plan.first + k].h / std::sqrt(0.5 * (plan.b[k] + plan.b[k + 1]));
     if (k >= kept) ++kept;
   }

@@ -178,9 +178,9 @@ double RollingFeed::stop_b(std::int64_t first, std::int64_t end) const noexcept 
 
 void RollingFeed::choose_bar(const Attempt& how) noexcept {
   const int cells = new_.cells();
-  double most = 0;
-  for (int k = 0; k <= cells; ++k) most = std::max(most, bound_[k]);
-  for (int k = 0; k <= cells; ++k) bar_knots_[k] = std::max(bound_[k], 1e-6 * most);
+  double largest = 0;
+  for (int k = 0; k <= cells; ++k) largest = std::max(largest, bound_[k]);
+  for (int k = 0; k <= cells; ++k) bar_knots_[k] = std::max(bound_[k], 1e-6 * largest);
   if (how.is_around_old && !is_at_rest_) {
     // Up to where the old plan turns to its rest, which is no guide: there it falls behind the
     // share of the bound that it has before.

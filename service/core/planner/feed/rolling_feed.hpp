@@ -81,8 +81,9 @@ class RollingFeed {
 
   /// Behind a fault: the path ends at `x` of `span`, the `number`th, at rest; or behind what was
   /// planned, and behind `least` cells, where that is farther.
-  void end_at(const JointSpan& span, std::uint64_t number, double x, std::int64_t least) noexcept {
-    grid_.end_at(span, number, x, std::max(least, is_at_rest_ ? next_ : old_.end));
+  void end_at(const JointSpan& span, std::uint64_t number, double x,
+              std::int64_t smallest) noexcept {
+    grid_.end_at(span, number, x, std::max(smallest, is_at_rest_ ? next_ : old_.end));
   }
 
   /// What push(), finish() or, where cells had to wait for room, try_plan() found.

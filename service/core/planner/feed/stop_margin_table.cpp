@@ -28,13 +28,13 @@ StopMarginTable::StopMarginTable(std::span<const JointCell> cells, double offset
                                  const JointCaps& caps, const JointCaps& fault_caps,
                                  const MotionChoice& choice) noexcept
     : cells_(cells), offset_(offset), caps_(caps), fault_caps_(fault_caps), choice_(choice) {
-  double least = 0, most = 0;
+  double smallest = 0, largest = 0;
   for (const JointCell& cell : cells) {
     const double accel = find_acceleration({&cell, 1}, caps, 0);
-    least = least == 0 ? accel : std::min(least, accel);
-    most = std::max(most, accel);
+    smallest = smallest == 0 ? accel : std::min(smallest, accel);
+    largest = std::max(largest, accel);
   }
-  is_varied_ = most > kVaried * least;
+  is_varied_ = largest > kVaried * smallest;
 }
 
 std::span<const JointCell> StopMarginTable::cells_between(double begin, double end) const noexcept {
@@ -86,21 +86,21 @@ void StopMarginTable::grant(TimePiece& time) const noexcept {
   const PathLimits& planned = choice_.limits;
   const double profile_jerk = choice_.profile.jerk;
   // Along a phase ṡ + s̈²/2j and the place where a stop ends are largest at one of its ends.
-  const auto most = [&](auto of) { return std::max(of(begin), of(end)); };
+  const auto largest = [&](auto of) { return std::max(of(begin), of(end)); };
   const auto top_of = [&](const PathState& p, double a) {
     return p.ds + 0.5 * a * a / profile_jerk;
   };
-  const StopRange range{.velocity = std::min(planned.velocity, most([&](const PathState& p) {
+  const StopRange range{.velocity = std::min(planned.velocity, largest([&](const PathState& p) {
                                                return top_of(p, std::max(p.dds, 0.0));
                                              })),
-                        .top = most([&](const PathState& p) { return top_of(p, p.dds); }),
-                        .acceleration = most([](const PathState& p) { return std::abs(p.dds); }),
-                        .fall = most([](const PathState& p) { return std::max(-p.dds, 0.0); })};
+                        .top = largest([&](const PathState& p) { return top_of(p, p.dds); }),
+                        .acceleration = largest([](const PathState& p) { return std::abs(p.dds); }),
+                        .fall = largest([](const PathState& p) { return std::max(-p.dds, 0.0); })};
   // A stop that may use more ends sooner: every round looks at less of the path.
   PathLimits stop = planned;
   auto cells = cells_;
   for (int n = 0; n < (is_varied_ ? 3 : 1); ++n) {
-    const double reach = most([&](const PathState& p) { return reach_of(p, stop); });
+    const double reach = largest([&](const PathState& p) { return reach_of(p, stop); });
     if (is_varied_) cells = cells_between(begin.s, reach);
     stop = find_authority(cells, caps_, range);
     stop.acceleration = std::max(stop.acceleration, choice_.profile.peak_acceleration());

@@ -42,14 +42,14 @@ struct Line {
 };
 
 /// Largest b₀ <= `most` for which a b₁ in [0, `behind`] keeps every row.
-double largest_begin(const Rows& rows, double most, double behind) noexcept {
-  double b0 = most;
+double largest_begin(const Rows& rows, double largest, double after) noexcept {
+  double b0 = largest;
   for (int n = 0; n < rows.count; ++n) {
     const Row& row = rows.row[static_cast<std::size_t>(n)];
     if (std::abs(row.p) <= kNone && row.r > kNone) b0 = std::min(b0, row.limit / row.r);
   }
   for (int round = 0; round < kMaxRounds; ++round) {
-    Line high{0, behind}, low{0, 0};
+    Line high{0, after}, low{0, 0};
     for (int n = 0; n < rows.count; ++n) {
       const Row& row = rows.row[static_cast<std::size_t>(n)];
       if (std::abs(row.p) <= kNone) continue;

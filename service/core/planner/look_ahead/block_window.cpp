@@ -56,10 +56,10 @@ void BlockWindow::ask(const Start& start, std::span<const RouteAhead> routes) no
   ++questions_;
   asked_ = start;
   follows_ = find_first(start.sequence + (start.is_on_path ? 0 : 1));
-  most_ = kMaxFollowed;
-  if (const std::uint64_t told = reported_for(start.sequence); told > 0) {
-    const int followed = static_cast<int>(std::min<std::uint64_t>(told, kWaiting));
-    most_ = start.is_on_path ? followed : followed - 1;
+  max_followed_ = kMaxFollowed;
+  if (const std::uint64_t reported = reported_for(start.sequence); reported > 0) {
+    const int followed = static_cast<int>(std::min<std::uint64_t>(reported, kWaiting));
+    max_followed_ = start.is_on_path ? followed : followed - 1;
   }
   look_.begin(start.tool_length_mm, start.pose, slack_, routes);
 }
@@ -80,7 +80,9 @@ ClBlock BlockWindow::rest_of(ClBlock block) const noexcept {
 }
 
 bool BlockWindow::look() noexcept {
-  const auto is_answered = [this] { return look_.is_settled() || look_.followed() >= most_; };
+  const auto is_answered = [this] {
+    return look_.is_settled() || look_.followed() >= max_followed_;
+  };
   for (; !is_answered() && follows_ < blocks_.end_index(); ++follows_) {
     const ClBlock& block = blocks_[follows_];
     if (block.sequence != asked_.sequence) {
@@ -94,8 +96,8 @@ bool BlockWindow::look() noexcept {
 
 std::optional<FeedMark> BlockWindow::look_no_further() noexcept {
   if (!is_missing()) return {};
-  most_ = look_.followed();
-  const int looked_at = std::max(1, most_ + (asked_.is_on_path ? 0 : 1));
+  max_followed_ = look_.followed();
+  const int looked_at = std::max(1, max_followed_ + (asked_.is_on_path ? 0 : 1));
   const FeedMark mark{.sequence = asked_.sequence,
                       .looked_at = static_cast<std::uint64_t>(looked_at),
                       .is_late = true};

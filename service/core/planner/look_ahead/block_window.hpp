@@ -59,7 +59,7 @@ class BlockWindow : public PoleLookAhead {
     return look_.routes();
   }
   [[nodiscard]] bool is_cut_short() const noexcept override {
-    return !look_.is_settled() && look_.followed() >= most_;
+    return !look_.is_settled() && look_.followed() >= max_followed_;
   }
   /// Whether a question waits for blocks.
   [[nodiscard]] bool is_missing() noexcept { return questions_ > 0 && !look(); }
@@ -91,7 +91,7 @@ class BlockWindow : public PoleLookAhead {
   std::uint64_t questions_ = 0;
   Start asked_;
   std::int64_t follows_ = 0;
-  int most_ = 0;                  ///< that are followed
+  int max_followed_ = 0;          ///< that are followed
   IndexRing<FeedMark> reported_;  ///< what is asked again is answered the same
 };
 

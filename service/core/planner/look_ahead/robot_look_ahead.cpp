@@ -25,7 +25,7 @@ class Course {
  public:
   Course(const MachineModel& model, const LookAheadSlack& slack, const RobotStart& start) noexcept
       : model_(model), slack_(slack), at_(start) {
-    inside_ = place_at(at_.pose);
+    inside_ = singularity_at(at_.pose);
   }
 
   /// False: it ends on the way.
@@ -58,9 +58,9 @@ class Course {
   enum class Move { kDone, kTooFar, kEnds };
 
   /// The singular place that the pose lies at within the slack, if there is one.
-  [[nodiscard]] const Singularity* place_at(const ToolPose& pose) const noexcept {
-    static constexpr Singularity kPlaces[] = {Singularity::kShoulder, Singularity::kWrist};
-    for (const Singularity& at : kPlaces) {
+  [[nodiscard]] const Singularity* singularity_at(const ToolPose& pose) const noexcept {
+    static constexpr Singularity kSingularities[] = {Singularity::kShoulder, Singularity::kWrist};
+    for (const Singularity& at : kSingularities) {
       const double near = at == Singularity::kWrist ? slack_.axis_rad : slack_.tip_mm;
       if (distance(at, pose) < near) return &at;
     }
@@ -71,7 +71,7 @@ class Course {
   }
 
   [[nodiscard]] Move move_to(const ToolPose& pose, bool may_halve) noexcept {
-    const Singularity* const inside = place_at(pose);
+    const Singularity* const inside = singularity_at(pose);
     if (inside != nullptr) {  // the redundant joint rests, whatever the others do
       inside_ = inside;
       return Move::kDone;
@@ -107,11 +107,11 @@ class Course {
            tip_axis_outside(model_, at_.tool_length_mm, to.q) < 0;
   }
   [[nodiscard]] double turn_to(const JointVector& q) const noexcept {
-    double most = 0;
+    double largest = 0;
     for (int i = 0; i < model_.joint_count; ++i) {
-      most = std::max(most, std::abs(q[i] - at_.joints[i]));
+      largest = std::max(largest, std::abs(q[i] - at_.joints[i]));
     }
-    return most;
+    return largest;
   }
 
   const MachineModel& model_;

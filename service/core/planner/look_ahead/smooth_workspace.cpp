@@ -174,9 +174,9 @@ bool SmoothPlanner::Workspace::rewind(MotionWriter& writer) noexcept {
   if (result.status == PlanStatus::kRefused) refuse(result);
   if (result.status != PlanStatus::kOk) return false;
   note(result.rewind);
-  const RestToRestPlanner::Junction behind = plain.junction();
-  const RewindTarget to{behind.joints, result.rewind.turns, find_branch(behind)};
-  run.go_on(to, behind.path_index, behind.window);
+  const RestToRestPlanner::Junction after = plain.junction();
+  const RewindTarget to{after.joints, result.rewind.turns, find_branch(after)};
+  run.go_on(to, after.path_index, after.window);
   return true;
 }
 

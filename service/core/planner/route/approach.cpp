@@ -124,11 +124,11 @@ PathFault Router::retract(const ClBlock& block, PlanCursor& cursor, Staging& out
 
 PathFault Router::lift_longer_tool(const Job& rapid, PlanCursor& cursor, Staging& out) noexcept {
   const double above = (cursor.pose.tip - left_.tip).dot(left_.axis);
-  const double least = retracted_.retract - kNoClearance_mm;
-  if (above >= least) return {};
+  const double smallest = retracted_.retract - kNoClearance_mm;
+  if (above >= smallest) return {};
   const double missing = model_.clearance_mm - above;
   const double up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, missing);
-  if (above + up < least) {
+  if (above + up < smallest) {
     const auto at = solve_near(lifted(cursor.pose, missing), cursor.joints, cursor.tool_length_mm);
     if (const int box = keep_out_between(model_.keep_out, cursor.joints, at.q).box; box >= 0) {
       return {PathFault::Kind::kKeepOut, -1, 1.0 * box};
@@ -210,7 +210,7 @@ void Router::take_looked(std::span<const RouteAhead> found, Candidates& candidat
 
 void Router::look_along(const ClBlock& block, const ToolPose& start, double tool_length_mm,
                         Candidates& candidates) const noexcept {
-  const std::span<const ClBlock> blocks = behind(block);
+  const std::span<const ClBlock> blocks = after(block);
   if (blocks.empty()) return;
   const RoutesAhead found = ahead_of(candidates);
   RouteLookAhead look(model_);
@@ -227,7 +227,7 @@ void Router::look_along_arm(const ClBlock& block, const ToolPose& start, double 
   for (int n = 0; n < candidates.count; ++n) {
     Candidate& candidate = candidates.candidate[n];
     candidate.carries = follow_ahead(
-        model_, slack, {tool_length_mm, start, candidate.branch, candidate.joints}, behind(block));
+        model_, slack, {tool_length_mm, start, candidate.branch, candidate.joints}, after(block));
   }
   candidates.sort();
 }
@@ -240,7 +240,7 @@ std::span<const ClBlock> Router::from(const ClBlock& block) const noexcept {
 }
 
 /// The blocks behind where `block` begins to be cut, of those that are known.
-std::span<const ClBlock> Router::behind(const ClBlock& block) const noexcept {
+std::span<const ClBlock> Router::after(const ClBlock& block) const noexcept {
   const std::span<const ClBlock> all = from(block);
   return all.empty() || block.is_arc ? all : all.subspan(1);
 }

@@ -111,18 +111,19 @@ bool FreeSpline::narrow(std::span<const Node> nodes, std::span<const StringWindo
     window = {between(nodes, middle, u, [&](std::size_t n) { return nodes[n].t; }),
               -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     while (first + 1 < nodes.size() && nodes[first + 1].u <= begin) ++first;
-    double least = std::numeric_limits<double>::infinity();
+    double smallest = std::numeric_limits<double>::infinity();
     std::size_t last = first;
     for (;; ++last) {
       window.low = std::max(window.low, windows[last].low);
       window.high = std::min(window.high, windows[last].high);
-      least = std::min(least, windows[last].high - windows[last].low);
+      smallest = std::min(smallest, windows[last].high - windows[last].low);
       if (last + 1 == nodes.size() || nodes[last].u >= end) break;
     }
     const bool is_fixed = i < fixed_at_begin_ || i + fixed_at_end_ >= pieces_ + kDegree;
     // Where the joint may be anywhere there is no width to keep: no share of it is a number.
     const bool is_anywhere = std::isinf(window.high - window.low);
-    if (is_fixed || is_anywhere || window.high - window.low >= shape.width_share * least) continue;
+    if (is_fixed || is_anywhere || window.high - window.low >= shape.width_share * smallest)
+      continue;
     for (std::size_t n = first; n <= last; ++n) {
       if (gaps_[n] <= kMinGap_mm) continue;
       gaps_[n] = std::max(0.5 * gaps_[n], kMinGap_mm);

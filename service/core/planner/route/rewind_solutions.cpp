@@ -26,8 +26,8 @@ void RewindSolutions::sort() noexcept {
 
 double room_of(const JointLimits& limits, double at, bool is_upwards) noexcept {
   const double below = at - limits.travel_min, above = limits.travel_max - at;
-  const double behind = is_upwards ? below : above;
-  const double missing = 0.5 * kTurn_rad - behind;
+  const double after = is_upwards ? below : above;
+  const double missing = 0.5 * kTurn_rad - after;
   return missing > 0 ? -missing : (is_upwards ? above : below);
 }
 

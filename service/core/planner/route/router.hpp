@@ -154,7 +154,7 @@ class Router {
   /// The same for a robot.
   void look_along_arm(const ClBlock& block, const ToolPose& start, double tool_length_mm,
                       Candidates& candidates) const noexcept;
-  [[nodiscard]] std::span<const ClBlock> behind(const ClBlock& block) const noexcept;
+  [[nodiscard]] std::span<const ClBlock> after(const ClBlock& block) const noexcept;
   /// `block` and those behind it, of those that are known.
   [[nodiscard]] std::span<const ClBlock> from(const ClBlock& block) const noexcept;
   using RoutesAhead = std::array<RouteAhead, kMaxCandidates>;

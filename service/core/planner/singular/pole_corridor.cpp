@@ -161,7 +161,7 @@ void PoleCorridor::settle(PoleStretch& stretch) noexcept {
   if (stretch.has_room && waiting + FreeSpline::kPieces <= kPending) {
     const auto pieces = find_string(stretch);
     for (const PoleZone& piece : pieces) pending_.push(piece);
-    if (!pieces.empty()) return know_behind(pieces.back());
+    if (!pieces.empty()) return know_after(pieces.back());
     is_exact_best = string_.is_exact_best();
   }
   if (!is_exact_best && !may_be_exact(pass)) {
@@ -191,7 +191,7 @@ bool PoleCorridor::is_on_pole(const PoleStretch& stretch) const noexcept {
   return false;
 }
 
-void PoleCorridor::know_behind(const PoleZone& piece) noexcept {
+void PoleCorridor::know_after(const PoleZone& piece) noexcept {
   course_ = {piece.branch_after, piece.is_held, held_rate_of(piece)};
   known_u_ = piece.end;
   JointVector reference{};
@@ -240,7 +240,7 @@ void PoleCorridor::wind(double by, const JointVector& joints) noexcept {
   cut_count_ = 0;
   asked_u_ = -1;
   stretches_.begin_again();
-  if (kept > pending_.begin_index()) return know_behind(pending_.back());
+  if (kept > pending_.begin_index()) return know_after(pending_.back());
   course_ = out_course_;
   known_ = joints;
   if (!probes_.is_empty()) known_u_ = emitted_u();

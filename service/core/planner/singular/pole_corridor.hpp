@@ -123,7 +123,7 @@ class PoleCorridor {
   /// Joints of the exact way at `u`, the windings followed from where they are known.
   [[nodiscard]] JointVector follow_to(double u) const noexcept;
   /// `piece` is the last one of a stretch: branch and winding behind it are known.
-  void know_behind(const PoleZone& piece) noexcept;
+  void know_after(const PoleZone& piece) noexcept;
   /// Whether a stretch is partly out.
   [[nodiscard]] bool is_in_zone() const noexcept;
   [[nodiscard]] bool may_emit() const noexcept;

@@ -41,9 +41,9 @@ bool PoleStretches::is_minimum(ProbeIndex probe) const noexcept {
   const double here = probes_.distance_of(probe);
   if (!(here < kNear_rad) || probe == probes_.begin_probe()) return false;
   const bool is_last = probe + 1 == probes_.end_probe();
-  const double behind =
+  const double after =
       is_last ? probes_.distance_at(probes_.end_u()) : probes_.distance_of(probe + 1);
-  return here <= probes_.distance_of(probe - 1) && here < behind;
+  return here <= probes_.distance_of(probe - 1) && here < after;
 }
 
 bool PoleStretches::is_close(ProbeIndex probe) const noexcept {
@@ -66,7 +66,7 @@ bool PoleStretches::find_next(const SettledPath& settled) noexcept {
   return false;
 }
 
-bool PoleStretches::is_known_behind(double u) const noexcept {
+bool PoleStretches::is_known_after(double u) const noexcept {
   return settled_.is_whole || probes_.is_full() || probes_.end_u() > u + 2 * kPoleReach_mm + 1;
 }
 
@@ -105,7 +105,7 @@ PoleStretches::ProbeIndex PoleStretches::find_hold(double begin) const noexcept 
   return best;
 }
 
-double PoleStretches::find_room_behind(double core_end) const noexcept {
+double PoleStretches::find_room_after(double core_end) const noexcept {
   const double room = std::min(kPoleReach_mm, kReachShare * (probes_.end_u() - core_end));
   for (ProbeIndex n = run_.last + 1;
        n + 1 < probes_.end_probe() && probes_.u_of(n) < core_end + 2 * kPoleReach_mm; ++n) {
@@ -139,7 +139,7 @@ void PoleStretches::set_begin(PoleStretch& out, double core_begin) const noexcep
 }
 
 PoleStretches::Answer PoleStretches::decide(PoleStretch& out) noexcept {
-  if (!is_known_behind(probes_.u_of(std::max(probe_ - 1, probes_.begin_probe())))) {
+  if (!is_known_after(probes_.u_of(std::max(probe_ - 1, probes_.begin_probe())))) {
     return Answer::kNeedsSpans;
   }
   out = {};
@@ -172,7 +172,7 @@ PoleStretches::Answer PoleStretches::decide(PoleStretch& out) noexcept {
   } else {
     out.last = run_.last;
     const double core_end = std::max(probes_.u_of(run_.last), nearest_about(run_.last));
-    if (!is_known_behind(core_end)) return Answer::kNeedsSpans;
+    if (!is_known_after(core_end)) return Answer::kNeedsSpans;
     out.close_end = core_end;
     set_end(out, core_end);
   }
@@ -192,7 +192,7 @@ void PoleStretches::set_end(PoleStretch& out, double core_end) const noexcept {
     pass.end = probes_.end_u();
     return;
   }
-  const double room = find_room_behind(core_end);
+  const double room = find_room_after(core_end);
   pass.end = snapped(core_end + room);
   out.has_room = out.has_room && room > kMinReach_mm;
 }

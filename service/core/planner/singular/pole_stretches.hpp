@@ -81,12 +81,12 @@ class PoleStretches {
   [[nodiscard]] bool is_close(ProbeIndex probe) const noexcept;
   [[nodiscard]] bool ends_path(ProbeIndex probe) const noexcept;
   /// Whether enough of the path behind `u` is known.
-  [[nodiscard]] bool is_known_behind(double u) const noexcept;
+  [[nodiscard]] bool is_known_after(double u) const noexcept;
   [[nodiscard]] double nearest_about(ProbeIndex probe) const noexcept;
   [[nodiscard]] double snapped(double u) const noexcept;
   void follow() noexcept;
   [[nodiscard]] ProbeIndex find_hold(double begin) const noexcept;
-  [[nodiscard]] double find_room_behind(double core_end) const noexcept;
+  [[nodiscard]] double find_room_after(double core_end) const noexcept;
   void set_begin(PoleStretch& out, double core_begin) const noexcept;
   void set_end(PoleStretch& out, double core_end) const noexcept;
 

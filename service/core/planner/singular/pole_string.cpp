@@ -135,9 +135,9 @@ FreeEnd PoleString::begin_of() const noexcept {
 /// As many nodes as lie on the stretch.
 std::size_t PoleString::node_count() const noexcept {
   const auto nodes = walls_.nodes();
-  const auto behind = std::find_if(nodes.begin(), nodes.end(),
-                                   [this](const auto& node) { return node.u > pass_->end; });
-  return static_cast<std::size_t>(behind - nodes.begin());
+  const auto later = std::find_if(nodes.begin(), nodes.end(),
+                                  [this](const auto& node) { return node.u > pass_->end; });
+  return static_cast<std::size_t>(later - nodes.begin());
 }
 
 FreeEnd PoleString::end_of(const PoleWalls::Course& course,
@@ -253,10 +253,10 @@ bool PoleString::is_inside_at_kinks() noexcept {
   return is_inside;
 }
 
-double PoleString::time_of_trial(double most) const noexcept {
+double PoleString::time_of_trial(double largest) const noexcept {
   constexpr int kSteps = 2;
   double sum = 0;
-  for (std::size_t n = 0; n < trial_count_ && sum <= most; ++n) {
+  for (std::size_t n = 0; n < trial_count_ && sum <= largest; ++n) {
     const PoleZone& piece = trial_[n];
     const double h = piece.end - piece.begin;
     for (int k = 0; k < kSteps; ++k) {

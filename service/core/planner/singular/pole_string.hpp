@@ -59,7 +59,7 @@ class PoleString {
   [[nodiscard]] bool is_inside() noexcept;
   [[nodiscard]] bool is_inside_at_kinks() noexcept;
   /// Counted no farther than `most`.
-  [[nodiscard]] double time_of_trial(double most) const noexcept;
+  [[nodiscard]] double time_of_trial(double largest) const noexcept;
   [[nodiscard]] double exact_time() const noexcept;
 
   PoleWalls walls_;

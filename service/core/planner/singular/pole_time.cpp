@@ -21,16 +21,16 @@ double slowness(const MachineModel& model, const BandSpan& span, const Pose<Jet<
                 const Joints<Jet<3>>& q) noexcept {
   double tip = 0;
   for (int i = 0; i < 3; ++i) tip += pose.tip[i].derivative(1) * pose.tip[i].derivative(1);
-  double most = std::max(std::sqrt(tip) / span.feed_mm_per_s, 1 / span.u_speed_mm_per_s);
+  double largest = std::max(std::sqrt(tip) / span.feed_mm_per_s, 1 / span.u_speed_mm_per_s);
   for (int i = 0; i < model.joint_count; ++i) {
     const JointLimits& limits = model.joints[i].limits;
-    most = std::max(most, std::abs(q[i].derivative(1)) / limits.velocity);
+    largest = std::max(largest, std::abs(q[i].derivative(1)) / limits.velocity);
     const double bend = std::abs(q[i].derivative(2)) / limits.acceleration;
-    if (bend > most * most) most = std::sqrt(bend);
+    if (bend > largest * largest) largest = std::sqrt(bend);
     const double twist = std::abs(q[i].derivative(3)) / limits.jerk;
-    if (twist > most * most * most) most = std::cbrt(twist);
+    if (twist > largest * largest * largest) largest = std::cbrt(twist);
   }
-  return most;
+  return largest;
 }
 
 }  // namespace meridian

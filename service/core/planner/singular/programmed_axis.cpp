@@ -68,10 +68,10 @@ double ProgrammedAxis::next_end(double u) const noexcept {
 }
 
 double ProgrammedAxis::kink_at(std::int64_t n) const noexcept {
-  const Mark &before = mark(n - 1), &here = mark(n), &behind = mark(n + 1);
+  const Mark &before = mark(n - 1), &here = mark(n), &after = mark(n + 1);
   const Vector3 axis = to_vector(here.axis);
   const Vector3 in = (axis - to_vector(before.axis)) / (here.u - before.u);
-  const Vector3 out = (to_vector(behind.axis) - axis) / (behind.u - here.u);
+  const Vector3 out = (to_vector(after.axis) - axis) / (after.u - here.u);
   return (out - in).norm();
 }
 

@@ -37,7 +37,7 @@ class Search {
     if (found.end > found.begin) return found;
     const RobotPass turned = search_turned();
     if (turned.end > turned.begin) return turned;
-    looks_behind_ = false;  // joints leave travel there whatever is chosen
+    looks_after_ = false;  // joints leave travel there whatever is chosen
     return search();
   }
 
@@ -77,7 +77,7 @@ class Search {
     const double time = outside + time_on_pass(task_, pass, fit_.reference(), kSamples / 2);
     if (!is_better(time, best) || meets_other(pass, kSamples)) return;
     if (!is_inside(pass, kSamples) || !is_inside_at_kinks(pass)) return;
-    if (looks_behind_ && !fit_.leads_on(pass)) return;
+    if (looks_after_ && !fit_.leads_on(pass)) return;
     best = {time, pass};
   }
 
@@ -212,7 +212,7 @@ class Search {
   PassFit fit_;
   std::array<double, kKinks> kinks_{};  // u
   std::size_t kink_count_ = 0;
-  bool looks_behind_ = true;
+  bool looks_after_ = true;
   bool meets_other_ = false;  // a pass at one singularity, where it was looked for last
 };
 

@@ -21,7 +21,7 @@ constexpr double kMinPassPart_mm = 1e-6;
 constexpr double kPassOutOfReach_rad = 0.6, kPassOutOfReach_mm = 100;
 /// Of the tip, where nothing may give: kPoleDeviation_rad at the end of a tool.
 constexpr double kExactTip_mm = 1e-3;
-constexpr Singularity kPlaces[] = {Singularity::kShoulder, Singularity::kWrist};
+constexpr Singularity kBothSingularities[] = {Singularity::kShoulder, Singularity::kWrist};
 
 bool is_robot(const MachineModel& model) noexcept { return model.family == MachineFamily::kRobot; }
 
@@ -69,7 +69,7 @@ void RobotPasses::measure(Held& held) const noexcept {
   for (std::size_t k = 0; k < kProbes; ++k) {
     const double x = held.span.band.length * static_cast<double>(k) / kProbes;
     const ToolPose pose = pose_on(held.span.band.c, x);
-    for (const Singularity at : kPlaces) {
+    for (const Singularity at : kBothSingularities) {
       held.distance[index_of(at)][k] =
           singular_distance(model_, tool_length_mm_, at, pose, branch_, known_);
     }
@@ -148,7 +148,7 @@ void RobotPasses::scan() noexcept {
     }
     const std::int64_t known = is_finished_ ? end_probe() : end_probe() - 1;
     if (probe_ >= known) return;
-    for (const Singularity at : kPlaces) {
+    for (const Singularity at : kBothSingularities) {
       if (!is_minimum(at, probe_)) continue;
       const double nearest = refine_minimum(at, probe_);
       if (!(distance_at(at, nearest) < tolerance(at))) continue;
@@ -194,7 +194,7 @@ bool RobotPasses::goes_on() const noexcept {
 
 SingularSet RobotPasses::singular_at(double u) const noexcept {
   SingularSet set = SingularSet::kNone;
-  for (const Singularity at : kPlaces) {
+  for (const Singularity at : kBothSingularities) {
     if (distance_at(at, u) < kOnPoleTolerances * tolerance(at)) set = set | only(at);
   }
   return set;
@@ -225,12 +225,12 @@ bool RobotPasses::may_emit() const noexcept {
 }
 
 bool RobotPasses::is_out_of_reach(const Held& held) const noexcept {
-  const auto least = [&](Singularity at) {
+  const auto smallest = [&](Singularity at) {
     const auto& distance = held.distance[index_of(at)];
     return *std::min_element(distance.begin(), distance.end());
   };
-  return least(Singularity::kWrist) > kPassOutOfReach_rad &&
-         least(Singularity::kShoulder) > kPassOutOfReach_mm;
+  return smallest(Singularity::kWrist) > kPassOutOfReach_rad &&
+         smallest(Singularity::kShoulder) > kPassOutOfReach_mm;
 }
 
 void RobotPasses::emit() noexcept {

@@ -23,18 +23,19 @@ StringWindow opened(const StringWindow& window) noexcept {
 /// From `value` in window `from` straight on until the way has to bend.
 Straight see_ahead(std::span<const StringWindow> windows, std::size_t from, double value) noexcept {
   constexpr double kAny = std::numeric_limits<double>::infinity();
-  Straight least{from, -kAny}, most{from, kAny};  // the slopes that are open, and what closes them
+  Straight smallest{from, -kAny},
+      largest{from, kAny};  // the slopes that are open, and what closes them
   for (std::size_t n = from + 1; n < windows.size(); ++n) {
     const StringWindow window = opened(windows[n]);
     const double dt = window.t - windows[from].t;
     const double low = (window.low - value) / dt, high = (window.high - value) / dt;
-    if (low > most.slope) return most;
-    if (high < least.slope) return least;
-    if (low >= least.slope) least = {n, low};
-    if (high <= most.slope) most = {n, high};
+    if (low > largest.slope) return largest;
+    if (high < smallest.slope) return smallest;
+    if (low >= smallest.slope) smallest = {n, low};
+    if (high <= largest.slope) largest = {n, high};
   }
-  if (least.slope > 0) return least;
-  if (most.slope < 0) return most;
+  if (smallest.slope > 0) return smallest;
+  if (largest.slope < 0) return largest;
   return {windows.size() - 1, 0};
 }
 

@@ -70,13 +70,13 @@ TEST(CellGrid, EndsAPathInsideOfACellThatIsShortenedForIt) {
 }
 
 TEST(CellGrid, EndsAPathBetweenTwoCellsWithoutASliver) {
-  Ended exact, before, behind;
+  Ended exact, before, after;
   exact.grid.end_at(exact.second, 1, 20, 0);
   exact.expect_end(70, 19, 1);
   before.grid.end_at(before.second, 1, 19.9, 0);
   before.expect_end(70, 19, 0.9);
-  behind.grid.end_at(behind.second, 1, 20.1, 0);
-  behind.expect_end(70, 19, 1.1);
+  after.grid.end_at(after.second, 1, 20.1, 0);
+  after.expect_end(70, 19, 1.1);
 }
 
 TEST(CellGrid, EndsAPathBehindTheCellsThatStand) {

@@ -55,15 +55,15 @@ TEST(CellGrid, FindsTravelThatIsLeftBetweenTwoSamples) {
   ASSERT_FALSE(is_fault(g.grid.push(span)));
   ASSERT_FALSE(is_fault(g.grid.finish()));
   // Its least tilt by size, and the two samples nearest to it.
-  double least = 1e300;
+  double smallest = 1e300;
   for (int k = 0; k <= 328; ++k) {
     const auto at = joints_at(model, span.path, span.length * k / 328, start);
-    least = std::min(least, std::abs(at.q[4]));
+    smallest = std::min(smallest, std::abs(at.q[4]));
   }
-  EXPECT_LT(least, tilt - 0.01);
+  EXPECT_LT(smallest, tilt - 0.01);
   const double sign = start[4] > 0 ? 1 : -1;
   (sign > 0 ? model.joints[4].limits.travel_min : model.joints[4].limits.travel_max) =
-      sign * (least + 1e-8);
+      sign * (smallest + 1e-8);
   StraightGrid other(model);
   other.grid.begin(start, model.tool_length_mm);
   FeedSpan coarse = span;

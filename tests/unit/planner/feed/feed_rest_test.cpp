@@ -152,9 +152,9 @@ TEST(Crawl, KeepsEveryLimitAndIsNoSlowerThanItNeeds) {
     EXPECT_EQ(crawl.cells, 6);
     EXPECT_DOUBLE_EQ(crawl.length, 1.5);
     const FeedUse use = use_of(limits, cells.grid, 2, crawl);
-    const double most = std::max(use.worst(), use.b);
-    EXPECT_LE(most, 1.01);
-    EXPECT_GT(most, 0.85);
+    const double largest = std::max(use.worst(), use.b);
+    EXPECT_LE(largest, 1.01);
+    EXPECT_GT(largest, 0.85);
     const Crawl safe = checked(limits, cells.grid, 2, crawl);
     const FeedUse safe_use = use_of(limits, cells.grid, 2, safe);
     EXPECT_LE(std::max(safe_use.worst(), safe_use.b), 1 + 1e-12);

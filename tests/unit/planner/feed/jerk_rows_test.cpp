@@ -34,11 +34,11 @@ Drawn draw(unsigned seed) {
     out.limits.acceleration[j] = real(20, 80);
     out.limits.jerk[j] = real(200, 2000);
   }
-  for (CellSample& place : out.cell.at) {
+  for (CellSample& sample : out.cell.at) {
     for (int j = 0; j < kJoints; ++j) {
-      place.d1[j] = real(-1, 1);
-      place.d2[j] = real(-0.6, 0.6);
-      place.d3[j] = real(-0.4, 0.4);
+      sample.d1[j] = real(-1, 1);
+      sample.d2[j] = real(-0.6, 0.6);
+      sample.d3[j] = real(-0.4, 0.4);
     }
   }
   const double h = out.cell.h;
@@ -83,14 +83,14 @@ std::vector<JerkRow> all_rows(const Drawn& drawn) {
     const double limit = drawn.limits.acceleration[j] * at.accel_share - 0.5 * filter * root;
     if (!at.is_first) add(1, value, rest, limit), add(-1, value, rest, limit);
     for (std::size_t p = 0; p < 3; ++p) {
-      const CellSample& place = drawn.cell.at[p * 4];
+      const CellSample& sample = drawn.cell.at[p * 4];
       const double x = 0.5 * h * static_cast<double>(p), bar = at.bar[p];
       const double jerk = drawn.limits.jerk[j] * at.jerk_share;
       for (std::size_t t = 0; t < 3; ++t) {
         const double bend = (at.end[t] - at.slope[t]) / h;
         const double slope = at.slope[t] + bend * x;
         const double b = at.b[t] + at.slope[t] * x + 0.5 * bend * x * x;
-        value[t] = place.d3[j] * b + 1.5 * place.d2[j] * slope + 0.5 * place.d1[j] * bend;
+        value[t] = sample.d3[j] * b + 1.5 * sample.d2[j] * slope + 0.5 * sample.d1[j] * bend;
         rest[t] = jerk / (2 * bar * std::sqrt(bar)) * b;  // the tangent of 1/√b
       }
       add(1, value, rest, 1.5 * jerk / std::sqrt(bar));

@@ -133,18 +133,18 @@ Use use_of(const CellGrid& grid, const FeedLimits& limits, const MadeProblem& pr
   Use use;
   for (int k = 0; k < cells; ++k) {
     const double h = grid[k].h, bend = (step.slope(k + 1) - step.slope(k)) / h;
-    for (int place = 0; place <= 2; ++place) {
-      const CellSample& at = grid[k].at[place * FeedCell::kSteps / 2];
-      const double x = 0.5 * place * h;
+    for (int third = 0; third <= 2; ++third) {
+      const CellSample& at = grid[k].at[third * FeedCell::kSteps / 2];
+      const double x = 0.5 * third * h;
       const double b = step.b(k) + x * (step.slope(k) + 0.5 * x * bend), v = std::sqrt(b);
       const double slope = step.slope(k) + x * bend;
-      if (place > 0) use.feed = std::max(use.feed, b / grid[k].max_b);
+      if (third > 0) use.feed = std::max(use.feed, b / grid[k].max_b);
       for (int j = 0; j < limits.count; ++j) {
         const double jerk = (at.d3[j] * b + 1.5 * at.d2[j] * slope + 0.5 * at.d1[j] * bend) * v;
         const double accel =
             std::abs(0.5 * at.d1[j] * slope + at.d2[j] * b) + limits.slope * std::abs(at.d1[j]) * v;
         use.jerk = std::max(use.jerk, std::abs(jerk) / (limits.jerk[j] * problem.jerk_share[k]));
-        if (k > 0 && place == 0) {
+        if (k > 0 && third == 0) {
           use.acceleration =
               std::max(use.acceleration, accel / (limits.acceleration[j] * problem.accel_share[k]));
         }

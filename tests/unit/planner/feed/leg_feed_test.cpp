@@ -81,11 +81,11 @@ TEST(LegFeed, IsOneMotionFromRestToRestInsideEveryLimit) {
 TEST(LegFeed, GrantsStopsInsideEveryLimit) {
   Fed one = turning();
   ASSERT_GT(one.plan(), 0);
-  double least = 1e300;
+  double smallest = 1e300;
   for (int n = 2; n + 2 < one.staged->time_count; ++n) {
-    least = std::min(least, one.staged->times[n].stop_jerk);
+    smallest = std::min(smallest, one.staged->times[n].stop_jerk);
   }
-  EXPECT_GT(least, 0);
+  EXPECT_GT(smallest, 0);
   EXPECT_LE(use_of_stops(one.model, *one.staged, false).worst(), 1 + 1e-6);
   EXPECT_LE(use_of_stops(one.model, *one.staged, true).worst(), 1 + 1e-6);
 }
@@ -105,18 +105,19 @@ TEST(LegFeed, KeepsTheShareOfALegInInverseTime) {
   Fed one = turning(0);
   one.leg.share_per_s = 0.2;
   ASSERT_GT(one.plan(), 0);
-  double most = 0;
-  for (int n = 0; n < one.staged->time_count; ++n) most = std::max(most, one.staged->times[n].v);
-  EXPECT_LE(most, 0.2 * one.leg.path.length);
-  EXPECT_GT(most, 0.199 * one.leg.path.length);
+  double largest = 0;
+  for (int n = 0; n < one.staged->time_count; ++n)
+    largest = std::max(largest, one.staged->times[n].v);
+  EXPECT_LE(largest, 0.2 * one.leg.path.length);
+  EXPECT_GT(largest, 0.199 * one.leg.path.length);
 }
 
 TEST(LegFeed, TakesHardlyLongerThanFeedAndJointsDo) {
   Fed one(lai_machine(), pose_of({0, 0, 0}, 0.3, 0.2), pose_of({60, 20, 10}, 0.35, 0.3), 50);
   const double duration = one.plan();
-  const double least = min_leg_time(one.leg, one.table->all(), planned_caps(one.model, 600));
-  EXPECT_GT(duration, least);
-  EXPECT_LT(duration, 1.06 * least);
+  const double smallest = min_leg_time(one.leg, one.table->all(), planned_caps(one.model, 600));
+  EXPECT_GT(duration, smallest);
+  EXPECT_LT(duration, 1.06 * smallest);
 }
 
 TEST(LegFeed, StagesNothingThatTakesNoLessThanAskedFor) {

@@ -107,8 +107,8 @@ TEST(LegPlanner, CutsALegThatPassesBesideThePole) {
     EXPECT_NEAR(std::abs(one.joints[3] - one.start[3]), std::numbers::pi - 2 * beside / 0.15,
                 0.02 * beside / 0.15 + 1e-3);
     // C turns at 60 deg/s at most: that is the least time.
-    const double least = std::abs(one.joints[3] - one.start[3]) / units::rad_from_deg(60);
-    EXPECT_LT(duration_of(*one.staged), 1.6 * least);
+    const double smallest = std::abs(one.joints[3] - one.start[3]) / units::rad_from_deg(60);
+    EXPECT_LT(duration_of(*one.staged), 1.6 * smallest);
   }
 }
 

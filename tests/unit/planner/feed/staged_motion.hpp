@@ -114,7 +114,7 @@ inline double duration_of(const Staging& staged) {
 
 /// Largest speed of the tip.
 inline double tip_speed_of(const Staging& staged) {
-  double most = 0;
+  double largest = 0;
   for (int n = 0; n < staged.time_count; ++n) {
     const TimePiece& time = staged.times[n];
     const PathPiece& path = staged.paths[time.path_index - staged.first_index];
@@ -123,10 +123,10 @@ inline double tip_speed_of(const Staging& staged) {
       const auto tip = pose_at(path, Jet<1>::variable(state.s)).tip;
       double square = 0;
       for (int i = 0; i < 3; ++i) square += tip[i].derivative(1) * tip[i].derivative(1);
-      most = std::max(most, std::sqrt(square) * state.ds);
+      largest = std::max(largest, std::sqrt(square) * state.ds);
     }
   }
-  return most;
+  return largest;
 }
 
 }  // namespace meridian::test

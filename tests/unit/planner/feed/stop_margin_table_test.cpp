@@ -70,7 +70,7 @@ struct Granted {
   /// The largest shares of acceleration and jerk that stops from all times use in the cells that
   /// they pass.
   [[nodiscard]] JointCaps use(bool is_fault, double offset) const {
-    JointCaps most;
+    JointCaps largest;
     const JointCaps& limits = is_fault ? fault : hold;
     for (const TimePiece& time : times) {
       const StopMargin margin = is_fault ? StopMargin{time.fault_accel, time.fault_jerk}
@@ -82,13 +82,13 @@ struct Granted {
           const auto cell = std::min(cells.size() - 1, static_cast<std::size_t>(at.s));
           EXPECT_LE(cells[cell].begin - offset, at.s + 1e-9);
           const double rate = cells[cell].d1[0];
-          most.acceleration[0] =
-              std::max(most.acceleration[0], rate * std::abs(at.dds) / limits.acceleration[0]);
-          most.jerk[0] = std::max(most.jerk[0], rate * std::abs(at.ddds) / limits.jerk[0]);
+          largest.acceleration[0] =
+              std::max(largest.acceleration[0], rate * std::abs(at.dds) / limits.acceleration[0]);
+          largest.jerk[0] = std::max(largest.jerk[0], rate * std::abs(at.ddds) / limits.jerk[0]);
         }
       }
     }
-    return most;
+    return largest;
   }
 };
 

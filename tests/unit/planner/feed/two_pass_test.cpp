@@ -90,23 +90,23 @@ void draw(CellGrid& grid, unsigned seed) {
 
 double largest_use(const CellGrid& grid, const FeedLimits& limits, std::int64_t cell, double b0,
                    double b1) {
-  double most = 0;
+  double largest = 0;
   for (const bool is_end : {false, true}) {
     const CellSample& at = is_end ? grid[cell].at.back() : grid[cell].at.front();
     for (int j = 0; j < limits.count; ++j) {
       const double accel =
           at.d1[j] * (b1 - b0) / (2 * grid[cell].h) + at.d2[j] * (is_end ? b1 : b0);
-      most = std::max(most, std::abs(accel) / limits.acceleration[j]);
+      largest = std::max(largest, std::abs(accel) / limits.acceleration[j]);
     }
   }
-  return most;
+  return largest;
 }
 
 /// Whether from `b0` some speed behind the cell, at most `behind`, keeps acceleration.
 bool goes_on(const CellGrid& grid, const FeedLimits& limits, std::int64_t cell, double b0,
-             double behind) {
+             double after) {
   for (int n = 0; n <= 4000; ++n) {
-    if (largest_use(grid, limits, cell, b0, behind * n / 4000) <= 1 + 1e-9) return true;
+    if (largest_use(grid, limits, cell, b0, after * n / 4000) <= 1 + 1e-9) return true;
   }
   return false;
 }
@@ -119,18 +119,18 @@ TEST(TwoPass, IsTheFastestThatCanStillBrake) {
     const Passed got = pass(cells.grid, limits, 20);
     for (int k = 0; k < kCells; ++k) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << " cell " << k);
-      const double here = got.backward[k], behind = got.backward[k + 1];
+      const double here = got.backward[k], after = got.backward[k + 1];
       EXPECT_LE(here, cells.grid.max_b_at(k));
       EXPECT_LE(got.b[k], here * (1 + 1e-9) + 1e-9);
-      EXPECT_TRUE(goes_on(cells.grid, limits, k, here * 0.998, behind));
+      EXPECT_TRUE(goes_on(cells.grid, limits, k, here * 0.998, after));
       const bool is_bound = here < 0.999 * cells.grid.max_b_at(k);
       if (is_bound) {
-        EXPECT_FALSE(goes_on(cells.grid, limits, k, here * 1.002 + 1e-6, behind));
+        EXPECT_FALSE(goes_on(cells.grid, limits, k, here * 1.002 + 1e-6, after));
       }
       // Forward: as fast as acceleration and what lies behind allow.
       const double next = got.b[k + 1];
-      EXPECT_LE(next, behind * (1 + 1e-9) + 1e-9);
-      if (next < 0.999 * behind && next > 1e-6) {
+      EXPECT_LE(next, after * (1 + 1e-9) + 1e-9);
+      if (next < 0.999 * after && next > 1e-6) {
         EXPECT_GT(largest_use(cells.grid, limits, k, got.b[k], next * 1.001 + 1e-6), 1);
       }
     }

@@ -174,11 +174,11 @@ TEST(Approach, GoesToJointsThatAreKnownStraight) {
   EXPECT_EQ(one.cursor.joints, to);
   EXPECT_NEAR((one.cursor.pose.tip - forward(one.model, 110, to).tip).norm(), 0, kRounding);
   EXPECT_NEAR(one.router.last_approach().length, one.paths()[0].length, kRounding);
-  double most = 0;
+  double largest = 0;
   for (int n = 0; n < one.staged->time_count; ++n) {
-    most = std::max(most, one.staged->times[n].v);
+    largest = std::max(largest, one.staged->times[n].v);
   }
-  EXPECT_NEAR(most, 50, 0.1) << "path length at the feed of the block";
+  EXPECT_NEAR(largest, 50, 0.1) << "path length at the feed of the block";
   const JointVector outside{30, -10, 700, 1.0, 0.2, 0};
   const PathFault fault = one.router.approach_joints(cut({0, 0, 0}, Vector3::UnitZ()), outside,
                                                      one.cursor, *one.staged);

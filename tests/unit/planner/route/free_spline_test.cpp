@@ -157,13 +157,13 @@ TEST(FreeSpline, IsTheRounderTheMoreItIsRelaxed) {
 TEST(FreeSpline, ItsStringTouchesTheCorridorWhereItBends) {
   Corridor path = chicane();
   ASSERT_TRUE(path.fit(kZero, kZero, {2, 0.5, 0, 0}));
-  double most = 0, least = 0;
+  double largest = 0, smallest = 0;
   for (int n = 0; n <= 400; ++n) {
-    most = std::max(most, path.value_at(0.1 * n));
-    least = std::min(least, path.value_at(0.1 * n));
+    largest = std::max(largest, path.value_at(0.1 * n));
+    smallest = std::min(smallest, path.value_at(0.1 * n));
   }
-  EXPECT_NEAR(most, 1, 0.05);
-  EXPECT_NEAR(least, -1, 0.05);
+  EXPECT_NEAR(largest, 1, 0.05);
+  EXPECT_NEAR(smallest, -1, 0.05);
 }
 
 TEST(FreeSpline, HasNoMorePiecesThanThereIsRoomFor) {

@@ -106,7 +106,7 @@ inline FollowedPath follow(const MachineModel& model, JointVector q,
                            std::span<const JointSpan> spans) {
   FollowedPath followed;
   Joints<Jet<2>> last{};
-  double most_d1 = 1e-3, jump_d1 = 0;
+  double max_d1 = 1e-3, jump_d1 = 0;
   bool is_first = true;
   for (const JointSpan& span : spans) {
     PathPiece piece = make_spline(span);
@@ -120,7 +120,7 @@ inline FollowedPath follow(const MachineModel& model, JointVector q,
         if (k == 0) followed.jump = std::max(followed.jump, std::abs(by));
         if (i == 3) followed.turn += std::abs(by);
         EXPECT_LT(std::abs(by), i < 3 ? 40 : 0.6) << "u " << span.band.u0 + x << " joint " << i;
-        most_d1 = std::max(most_d1, std::abs(at.q[i].derivative(1)));
+        max_d1 = std::max(max_d1, std::abs(at.q[i].derivative(1)));
         if (k == 0 && i == 3 && !is_first) {
           jump_d1 = std::max(jump_d1, std::abs(at.q[i].derivative(1) - last[i].derivative(1)));
         }
@@ -133,7 +133,7 @@ inline FollowedPath follow(const MachineModel& model, JointVector q,
           std::max(followed.farthest_rad, angle_between(axis, pose_on(span.band.c, x).axis));
     }
   }
-  followed.jump_d1 = jump_d1 / most_d1;
+  followed.jump_d1 = jump_d1 / max_d1;
   followed.end = q;
   return followed;
 }

@@ -54,9 +54,9 @@ TEST(PoleProbes, KnowTheDistanceBetweenThemAndWhereItIsLeast) {
 TEST(PoleProbes, LookNoFartherThanThePath) {
   const Probed probed(20);  // it ends before the nearest point
   EXPECT_NEAR(probed.probes.find_nearest(20 * PoleProbes::kProbes - 1), 20, 1e-6);
-  Probed behind(40);
-  for (int n = 0; n < 25; ++n) behind.probes.drop_front();
-  EXPECT_NEAR(behind.probes.find_nearest(behind.probes.begin_probe()), 25, 1e-6);
+  Probed after(40);
+  for (int n = 0; n < 25; ++n) after.probes.drop_front();
+  EXPECT_NEAR(after.probes.find_nearest(after.probes.begin_probe()), 25, 1e-6);
 }
 
 TEST(PoleProbes, FindTheSpanOfAnyPlace) {

@@ -94,9 +94,9 @@ TEST(PoleStretches, PassOverWhatIsSettledAlready) {
   inside.settled = {60.0, true, false, true, 0};
   EXPECT_EQ(inside.ask(), Answer::kPassed);
   EXPECT_FALSE(inside.out.has_room);
-  Stretched behind(120, passing(0.0005));
-  behind.settled = {70.0, true, false, true, 0};
-  EXPECT_FALSE(behind.stretches.find_next(behind.settled));
+  Stretched after(120, passing(0.0005));
+  after.settled = {70.0, true, false, true, 0};
+  EXPECT_FALSE(after.stretches.find_next(after.settled));
 }
 
 TEST(PoleStretches, BeginWhereTheMachineRestsIfThePoleIsNearTheBeginOfThePath) {
