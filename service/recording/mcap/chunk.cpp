@@ -83,9 +83,9 @@ void Chunk::finish(std::uint64_t offset, std::string& out, ChunkEntry& entry) {
     put_record(out, Opcode::kMessageIndex, [&](std::string& to) {
       put(to, static_cast<std::uint16_t>(channel));
       put_list(to, [&](std::string& list) {
-        for (const IndexEntry& place : index_[channel]) {
-          put(list, place.time_ns);
-          put(list, place.offset);
+        for (const IndexEntry& message : index_[channel]) {
+          put(list, message.time_ns);
+          put(list, message.offset);
         }
       });
     });

@@ -38,7 +38,7 @@ TEST(Kinematics, ALongerToolReachesFartherDown) {
   EXPECT_LT((b.tip - (a.tip - 40 * a.axis)).norm(), kTipTolerance_mm);
 }
 
-TEST(Kinematics, BranchesTiltOppositeWays) {
+TEST(Kinematics, BranchesTiltInOppositeDirections) {
   const MachineModel model = test::lai_machine();
   const ToolPose pose{{40, -30, 20}, Vector3(0.3, -0.2, 0.9).normalized()};
   const auto a = solve(model, 110, pose, 0, JointVector{});

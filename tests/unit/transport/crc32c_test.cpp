@@ -68,7 +68,7 @@ TEST(BatchCrc, ChangesWithEveryBitOfHeadAndUsedBlocks) {
   }
 }
 
-TEST(BatchCrc, LeavesUnusedPlacesOut) {
+TEST(BatchCrc, LeavesUnusedSlotsOut) {
   Batch batch = sample_batch();
   const std::uint32_t crc = batch_crc(batch);
   batch.blocks[3].line = 99;

@@ -39,7 +39,7 @@ bool parse_number(std::string_view text, double& value) noexcept {
   return parse_number(text, value, decimals);
 }
 
-bool parse_number(std::string_view text, double& value, std::uint8_t& places) noexcept {
+bool parse_number(std::string_view text, double& value, std::uint8_t& decimal_count) noexcept {
   const char* at = text.data();
   const char* const end = at + text.size();
   const bool negative = at != end && *at == '-';
@@ -64,10 +64,10 @@ bool parse_number(std::string_view text, double& value, std::uint8_t& places) no
     const double magnitude =
         static_cast<double>(digits) / kPowerOfTen[static_cast<std::size_t>(decimals)];
     value = negative ? -magnitude : magnitude;
-    places = static_cast<std::uint8_t>(decimals);
+    decimal_count = static_cast<std::uint8_t>(decimals);
     return true;
   }
-  places = kMaxDecimals;
+  decimal_count = kMaxDecimals;
   return count > 0 || at != end ? parse_rare(text, value) : false;
 }
 
