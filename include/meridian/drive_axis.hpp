@@ -26,7 +26,7 @@ struct HomingSpec {
 /// One axis in drive coordinates. Limits that are 0 are not checked. Units: mm or rad, s.
 struct Axis {
   std::string name;
-  int joint = -1;  ///< its place in drive order, from 0; -1: its place in the list
+  int joint = -1;  ///< its index in drive order, from 0; -1: its index in the list
   bool is_rotary = false, is_endless = false;
   double home = 0;  ///< where the machine file has its home; the library does not use it
   double travel_min = 0, travel_max = 0;  ///< not checked where they are equal

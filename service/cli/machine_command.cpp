@@ -33,7 +33,7 @@ int refuse(const std::string& message) {
   return kInputRefused;
 }
 
-/// The picture of the machine at places of a program.
+/// The picture of the machine at points of a program.
 int draw_along(const Options& options, const MachineModel& model) {
   constexpr int kSamples = 9;
   const auto poses = read_program_poses(options.along, options.cl, options.machine, model);

@@ -244,7 +244,7 @@ BlockReject BlockCheck::find_joints(const ClBlock& block, bool& is_marginal) {
     if (passes(found)) return reject(block, RejectCode::kNone);
   }
   if (is_at_pole) {
-    // The redundant joint may stand anywhere here: look around the circle for a place inside
+    // The redundant joint may stand anywhere here: look around the circle for a point inside
     // travel.
     constexpr int kSamples = 72;
     for (int i = 0; i < kSamples; ++i) {

@@ -329,7 +329,7 @@ const dds::Credit* IntakeCheck::find_ended(std::uint64_t session) const noexcept
   return session == 0 || last == ended_.end() ? nullptr : last;
 }
 
-/// Free places become credit. One is kept for the end that append_end() may add.
+/// Free slots become credit. One is kept for the end that append_end() may add.
 void IntakeCheck::grant(const Surroundings& around) noexcept {
   if (!is_accepting(phase_) || around.free_slots <= 1) return;
   granted_end_ = std::max(granted_end_, next_ + around.free_slots - 1);

@@ -44,7 +44,7 @@ struct IntakeCounters {
 };
 
 /// The service's end of the session protocol: who holds the machine, which blocks it gets, what
-/// is wrong with them. A state machine of one thread; time, queue places and peers are arguments.
+/// is wrong with them. A state machine of one thread; time, queue slots and peers are arguments.
 ///
 /// One session at a time holds the machine, from its open until its program ran to the end, its
 /// queues were emptied (abort, disable, fault), or it left or was refused without a block. Credits

@@ -53,7 +53,7 @@ class OperatorLink {
   /// Asks for `verb` and returns the answer; nothing where the service stays silent. What is said
   /// for a dry run alone (may_be_dry(), argument 1) is said to a machine that reports one: of any
   /// other the answer is our own refusal, for services of before took the word for any other.
-  /// `seen`: what the operator saw elsewhere, in the place of the newest status that came in here.
+  /// `seen`: what the operator saw elsewhere, in place of the newest status that came in here.
   [[nodiscard]] std::optional<dds::Reply> ask(Verb verb, double argument, Milliseconds timeout,
                                               const std::optional<Seen>& seen = std::nullopt);
   /// Asks for a change of the set-up.

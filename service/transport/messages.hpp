@@ -328,7 +328,7 @@ struct MachineInfo {
   std::uint32_t joint_count = 0;
   std::array<JointInfo, kMaxJoints> joints{};
   std::uint32_t stage_drive_count = 0;                 ///< 0: every joint has a drive of its own
-  std::array<JointInfo, kStageDrives> stage_drives{};  ///< each in the place of a joint, `drive`
+  std::array<JointInfo, kStageDrives> stage_drives{};  ///< each in place of a joint, `drive`
   double max_feed_mm_per_min = 0;
   double tip_tolerance_mm = 0;
   double axis_tolerance_rad = 0;

@@ -18,7 +18,7 @@
 namespace meridian::test {
 namespace {
 
-/// A pipe in the place of a program's log, full, that nobody reads.
+/// A pipe in place of a program's log, full, that nobody reads.
 class FullPipe {
  public:
   explicit FullPipe(std::filesystem::path path) : path_(std::move(path)) {

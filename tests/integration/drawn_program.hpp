@@ -22,7 +22,7 @@ namespace meridian::test {
 
 using Engine = std::mt19937_64;
 
-/// Six cuts about a place of the table, the axis tilted by up to 40 degrees.
+/// Six cuts about a point of the table, the axis tilted by up to 40 degrees.
 [[nodiscard]] inline std::string drawn_program(Engine& engine) {
   std::uniform_real_distribution<double> coordinate(-80, 80), tilt(0, 0.7), around(-3.1, 3.1);
   std::string text = "PARTNO LIMITS\nUNITS/MM\nFEDRAT/20000,MMPM\n";

@@ -19,7 +19,7 @@ enum SetpointFlag : std::uint16_t {
   kSetpointMoving = 2,       ///< commanded velocity is not zero
   kSetpointFaultStop = 4,    ///< part of a FaultStop
   kSetpointDry = 8,          ///< of a dry run: no drive follows it, whatever the other flags say
-  kSetpointDryEnabled = 16,  ///< of a dry run in the place of kSetpointEnabled, which none has
+  kSetpointDryEnabled = 16,  ///< of a dry run in place of kSetpointEnabled, which none has
 };
 
 /// Whether the machine leads the joints by this setpoint, be it that nobody follows (dry run);
@@ -60,7 +60,7 @@ enum class ProbeInput : std::uint8_t {
   kContact  ///< its stylus is deflected
 };
 
-/// In the place of a joint: none.
+/// In place of a joint: none.
 inline constexpr std::uint8_t kNoJoint = 255;
 
 /// The newest feedback of the drives, as the cycle sees it.

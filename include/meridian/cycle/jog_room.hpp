@@ -80,7 +80,7 @@ inline void keep_drive(JogRates& rates, const Slopes& slopes, double velocity, d
   return true;
 }
 
-/// The farthest place between where the joint is and `end` where the drives are inside.
+/// The farthest point between where the joint is and `end` where the drives are inside.
 [[nodiscard]] inline double reach_of_drives(const MachineModel& machine, const JointVector& joints,
                                             int joint, double end) noexcept {
   if (are_drives_inside(machine, joints, joint, end)) return end;

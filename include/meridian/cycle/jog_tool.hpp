@@ -16,7 +16,7 @@
 #include "meridian/kinematics/tip_over_base.hpp"
 
 /// Jogging in the frame of the tool: along its axis, across it, or turning it
-/// about its tip. The way is surveyed before anything moves, a few places in
+/// about its tip. The way is surveyed before anything moves, a few points in
 /// each cycle; it ends where joints do not follow it evenly any more (travel,
 /// reach, the pole) and is as slow as its steepest place asks for. Frame: W.
 /// Units: mm, rad, s. RT: cycle. Proof: tests/property/cycle/jog_tool_test.cpp.
@@ -40,7 +40,7 @@ class ToolSurvey {
 
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
 
-  /// Looks at the next places.
+  /// Looks at the next points.
   void go_on(const MachineModel& machine, const ToolPath& tool_path) noexcept {
     constexpr int kSamples = 2;
     for (int n = 0; n < kSamples && !is_over_; ++n) {
@@ -235,7 +235,7 @@ class ToolSurvey {
     return false;
   }
 
-  /// Whether what is known at two neighbouring places explains how they differ:
+  /// Whether what is known at two neighbouring points explains how they differ:
   /// nothing steep hides between them.
   [[nodiscard]] bool is_even(const MachineModel& machine, const Sample& a,
                              const Sample& b) const noexcept {

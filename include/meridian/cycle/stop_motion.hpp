@@ -331,7 +331,7 @@ inline void leave_plan(Cycle& c) noexcept {
   return true;
 }
 
-/// At rest: the rate is zero, and plan time is the one of the place that was reached.
+/// At rest: the rate is zero, and plan time is the one of the point that was reached.
 inline void finish_stop(Cycle& c) noexcept {
   const StopInProgress& stop = c.state.stop;
   rest(c.state);

@@ -195,7 +195,7 @@ inline void check_drives(Cycle& c) noexcept {
 }
 
 /// Finds the place of the path ahead that is nearest to `joints` (1 rad counts kAxisLength mm),
-/// Newton from the place in force, never past the plan's rest. The piece in force goes along.
+/// Newton from the point in force, never past the plan's rest. The piece in force goes along.
 [[nodiscard]] inline double find_nearest(Cycle& c, const JointVector& joints,
                                          double& passed) noexcept {
   constexpr double kClose_mm = 1e-9;

@@ -17,7 +17,7 @@ namespace meridian {
 /// One joint of a chain from the workpiece to the tool. Direction and point are those at home, in
 /// the machine frame. A joint on the table side moves the workpiece.
 struct ChainJoint {
-  int joint = 0;  ///< its place in machine order
+  int joint = 0;  ///< its index in machine order
   bool is_rotary = false;
   bool is_table_side = false;
   Vector3 direction = Vector3::UnitZ();  ///< unit

@@ -74,7 +74,7 @@ template <class S>
   return limited_of(model, q)[static_cast<std::size_t>(i)];
 }
 
-/// Drive coordinates in drive order: as the joints, a stage's sliders in the places of the two
+/// Drive coordinates in drive order: as the joints, a stage's sliders in place of the two
 /// joints that it carries. RT: cycle.
 template <class S>
 [[nodiscard]] inline Joints<S> drives_of(const MachineModel& model, const Joints<S>& q) noexcept {

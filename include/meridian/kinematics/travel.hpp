@@ -36,7 +36,7 @@ inline void wind_into_travel(const MachineModel& model, const JointVector& refer
 }
 
 /// Returns the first joint, or drive of the stage, that is farther than `margin` outside its travel
-/// (or not a number), by its place in limited.hpp; -1 where all are inside. RT: cycle.
+/// (or not a number), by its index in limited.hpp; -1 where all are inside. RT: cycle.
 [[nodiscard]] inline int first_joint_outside_travel(const MachineModel& model, const JointVector& q,
                                                     double margin) noexcept {
   for (int i = 0; i < model.joint_count; ++i) {

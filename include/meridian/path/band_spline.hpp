@@ -34,7 +34,7 @@ struct BandTuning {
   bool bounds_mean = false;
 };
 
-/// The programmed pose at a place: between two of them the tip is on the straight line, the axis on
+/// The programmed pose at a point: between two of them the tip is on the straight line, the axis on
 /// their great circle.
 struct AxisMark {
   double u = 0;

@@ -34,7 +34,7 @@ enum class MotionKind : std::uint8_t {
   kCut,
   kRapid,
   kPoleTurn,
-  kRewind  ///< off the part, whole turns of the redundant joint, and back to the same place
+  kRewind  ///< off the part, whole turns of the redundant joint, and back to the same position
 };
 
 /// A stretch of path as a function of the path length s in [0, length]: where, not when.

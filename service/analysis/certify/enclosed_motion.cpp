@@ -24,7 +24,7 @@ namespace {
   const int free = redundant_joint(model);
   if (free < 0) return false;
   const auto joint = static_cast<std::size_t>(free);
-  if (path.joints_begin[joint] != path.joints_end[joint]) return false;  // held at another place
+  if (path.joints_begin[joint] != path.joints_end[joint]) return false;  // held at another point
   const Vector3 pole = pole_direction(model);
   const Vec3<Enclosure> k = pose_at(path, s).axis;
   Interval square;

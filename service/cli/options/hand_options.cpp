@@ -19,7 +19,7 @@ namespace {
 constexpr std::array<const char*, kToolAxisCount> kToolAxes{"tool-x", "tool-y", "tool-z", "tool-a",
                                                             "tool-b"};
 
-/// Place of the joint of that name; with `has_tool` from kMaxJoints on that of a tool axis.
+/// Index of the joint of that name; with `has_tool` from kMaxJoints on that of a tool axis.
 [[nodiscard]] std::optional<int> find_joint(const dds::MachineInfo& machine,
                                             const std::string& name, bool has_tool) {
   std::string names;

@@ -25,7 +25,7 @@ inline constexpr std::int64_t kVertexReach = 2048;
 /// Blocks whose end is nearer than this to the vertex before count as no way at all.
 inline constexpr double kMinStep_mm = 1e-6;
 
-/// Within this of u before and after a place in inverse time blocks say how fast tip and axis may
+/// Within this of u before and after a point in inverse time blocks say how fast tip and axis may
 /// be there: as far as a corner is felt at the widest gaps (docs/motion.md, 1.5).
 inline constexpr double kSpeedReach_mm = 5;
 

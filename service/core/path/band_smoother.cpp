@@ -17,7 +17,7 @@ void add_product(Vector6& out, double factor, const Vector6& x) noexcept {
   for (std::size_t d = 0; d < 6; ++d) out[d] += factor * x[d];
 }
 
-/// Third divided difference over the four places `x`, times 6 (local spacing)³.
+/// Third divided difference over the four points `x`, times 6 (local spacing)³.
 std::array<double, 4> find_third_difference(const std::array<double, 4>& x) noexcept {
   const double spacing = (x[3] - x[0]) / 3, scale = 6 * spacing * spacing * spacing;
   std::array<double, 4> out;

@@ -42,7 +42,7 @@ class BandSmoother {
                                       std::int64_t count) noexcept;
 
  private:
-  /// A place where the spline is held: sum of n[k] times the five points from `at` on, within
+  /// A point where the spline is held: sum of n[k] times the five points from `at` on, within
   /// `tip`, `axis` of `y`. All in tolerances.
   struct Sample {
     std::size_t at = 0;

@@ -27,7 +27,7 @@ class EnablingWatch {
     kBegun,     ///< a device was pressed that was not
     kReleased,  ///< one was let go
     kLeft,      ///< one said that it leaves
-    kNoRoom     ///< more devices than places: this one does not count
+    kNoRoom     ///< more devices than slots: this one does not count
   };
 
   /// Before any thread runs.

@@ -91,7 +91,7 @@ class Intake {
   void show();
   [[nodiscard]] stream::Surroundings around() noexcept;
 
-  /// Free places that the check does not know of, for what is on its way while it computes credits.
+  /// Free slots that the check does not know of, for what is on its way while it computes credits.
   static constexpr std::size_t kReserve = 64;
 
   dds::Participant& participant_;

@@ -14,7 +14,7 @@ namespace meridian::interpolator {
 
 /// Says once what changed among those who report drives: who has which, who is gone, who reports
 /// what is another one's, both by name, and whose drives obey another service. What it remembers is
-/// bounded by the places of DriveSources. Proof:
+/// bounded by the slots of DriveSources. Proof:
 /// tests/unit/daemon/source_reporter_test.cpp.
 class SourceReporter {
  public:

@@ -14,7 +14,7 @@ namespace meridian::interpolator {
 /// be held up anywhere in between, for any time. It looks at (1) the front block, (2) the mark,
 /// (3) the cycle's view, in this order, and a block is in step if it is not void by the mark and
 /// the epochs of mark and view are the same. Then the block is planned for the epoch it was meant
-/// for, from a place where the machine has been since:
+/// for, from a point where the machine has been since:
 ///
 /// * Let M be the mark in force when the block was pushed. Intake wrote M before it published the
 ///   block, so who sees the block (1) sees M or a later mark (2). A later mark that says the block

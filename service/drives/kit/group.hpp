@@ -15,7 +15,7 @@
 
 namespace meridian::drive {
 
-/// One axis of a group: its limits, its place in drive order, how it homes, where it stands.
+/// One axis of a group: its limits, its index in drive order, how it homes, where it stands.
 struct GroupAxis {
   JointSpec spec;
   HomingSpec homing;

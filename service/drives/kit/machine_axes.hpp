@@ -10,7 +10,7 @@
 
 namespace meridian::drive {
 
-/// The axes of a machine in drive order; those of an actuator stage in the places of the joints
+/// The axes of a machine in drive order; those of an actuator stage in place of the joints
 /// that it carries.
 [[nodiscard]] std::vector<Axis> axes_of_model(const MachineModel& model);
 /// The checked model of a machine file. Throws DriveError.

@@ -8,7 +8,7 @@
 
 namespace meridian::probe {
 
-/// What the kernel reports of a host in /proc and /sys; tests put another folder in the place of /.
+/// What the kernel reports of a host in /proc and /sys; tests put another folder in place of /.
 class HostFiles {
  public:
   explicit HostFiles(std::filesystem::path root = "/") : root_(std::move(root)) {}

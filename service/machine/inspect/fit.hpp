@@ -22,7 +22,7 @@ struct Fit {
   /// The margin and a hundredth of the mean of all: what a search makes large, for a joint that the
   /// frame cannot help must not leave the others anywhere.
   double score = -2;
-  int joint = -1;          ///< that has the margin, by its place in limited.hpp; -1: none
+  int joint = -1;          ///< that has the margin, by its index in limited.hpp; -1: none
   int box = -1;            ///< the keep-out box that is entered; -1: none
   int tip_axis = -1;       ///< of the base, from 0, along which the tip leaves its box; -1: none
   std::uint32_t line = 0;  ///< where it is so

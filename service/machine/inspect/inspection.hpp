@@ -10,7 +10,7 @@
 
 namespace meridian::inspect {
 
-/// What one joint alone does to the tool, from the place where the joints are tried. Units: mm,
+/// What one joint alone does to the tool, from the point where the joints are tried. Units: mm,
 /// rad. Frame: W.
 struct JointTrial {
   int joint = 0;

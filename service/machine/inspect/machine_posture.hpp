@@ -19,7 +19,7 @@ struct StagePosture {
   std::array<Vector3, kStageDrives> pin{};     ///< where its rod meets the table; slots: the slider
 };
 
-/// Where the parts of a machine are at one place of a program. Units: mm. Frame: that of the
+/// Where the parts of a machine are at one point of a program. Units: mm. Frame: that of the
 /// kinematics.
 struct MachinePosture {
   JointVector joints{};

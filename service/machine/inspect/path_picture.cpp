@@ -12,7 +12,7 @@
 namespace meridian::inspect {
 namespace {
 
-/// A cube around all places.
+/// A cube around all points.
 struct Cube {
   Vector3 middle = Vector3::Zero();
   double half = 100;
@@ -62,7 +62,7 @@ void print_posture(std::FILE* out, const MachinePosture& posture, const std::str
   return text;
 }
 
-/// One plot of all places; `columns` are those of a point.
+/// One plot of all points; `columns` are those of a point.
 [[nodiscard]] std::string plot_of(const std::vector<MachinePosture>& postures, const char* verb,
                                   const std::string& columns) {
   constexpr std::array<int, 3> kHead{200, 100, 10}, kTable{31, 95, 168}, kTool{60, 60, 60};

@@ -18,7 +18,7 @@ enum class Side {
 
 /// One joint as it stands in the machine. Units: mm. Frame: that of the kinematics.
 struct SkeletonJoint {
-  int joint = 0;  ///< its place in machine order
+  int joint = 0;  ///< its index in machine order
   bool is_rotary = false;
   Side side = Side::kTool;
   Vector3 direction = Vector3::UnitZ();  ///< unit, of positive motion; rotary: right-handed

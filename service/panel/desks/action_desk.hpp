@@ -15,7 +15,7 @@
 
 namespace meridian::panel {
 
-/// The operator in the place of a PLC: shows what the path waits for (tool, spindle, coolant, stop,
+/// The operator in place of a PLC: shows what the path waits for (tool, spindle, coolant, stop,
 /// vendor word) and answers when a person has done it, or could not. For machines where nobody else
 /// answers actions.
 class ActionDesk {
@@ -23,8 +23,8 @@ class ActionDesk {
   /// `participant` and `hub` must live on. Throws DdsError.
   ActionDesk(dds::Participant& participant, Hub& hub);
 
-  /// Publishes what is to be done now. What somebody else answered, or what no program waits for any
-  /// more, is not. One thread.
+  /// Publishes what is to be done now. What somebody else answered, or what no program waits for
+  /// any more, is not. One thread.
   void poll(const std::optional<dds::Status>& status);
   /// Answers the action of that id; `is_done` false: it could not be done. Any thread.
   [[nodiscard]] Outcome answer(std::uint64_t id, bool is_done);

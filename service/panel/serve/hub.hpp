@@ -36,7 +36,7 @@ class Hub {
     std::array<std::uint64_t, kPageKinds> seen{};
   };
 
-  /// Puts the newest text of `kind` in the place of the last.
+  /// Puts the newest text of `kind` in place of the last.
   void publish(Kind kind, std::string text);
 
   /// Waits for texts that `cursor` has not seen, at most `patience`, and returns them, the machine

@@ -13,8 +13,8 @@ namespace meridian::cl {
 struct Finding {
   enum class Severity : std::uint8_t { kRefusal, kWarning };
   Severity severity = Severity::kRefusal;
-  std::uint32_t line = 0;  ///< of the first place; 0: the whole file
-  std::string message;     ///< of the first place
+  std::uint32_t line = 0;  ///< of the first finding; 0: the whole file
+  std::string message;     ///< of the first finding
   std::string remedy;
   std::uint64_t count = 1;  ///< places
 };

@@ -15,7 +15,7 @@ using cl::refuse;
 
 constexpr double kSameAxis = 1e-6;  // of the sine: 0.2 arc seconds
 
-/// What is known of the tool's place, as the frames of now say it.
+/// What is known of the tool's position, as the frames of now say it.
 void restate_position(State& s, const cl::Frame& from_before) {
   ToolPosition& position = s.position;
   if (position.is_known()) {

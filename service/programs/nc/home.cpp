@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// G28, G30 and G53: single axes go to places of the machine itself.
+// G28, G30 and G53: single axes go to positions of the machine itself.
 #include <algorithm>
 #include <array>
 

@@ -103,7 +103,7 @@ struct PathEnd {
 [[nodiscard]] Expected<ToolPose, cl::Refusal> in_path(const State& s, const PathEnd& end);
 
 // drill.cpp
-/// Whether the tool may drill where it stands: along its axis, from a place that is known.
+/// Whether the tool may drill where it stands: along its axis, from a point that is known.
 [[nodiscard]] cl::Outcome check_hole(const State& s);
 /// One hole under the tool. It ends at the retract level.
 [[nodiscard]] cl::Outcome drill(State& s, const Line& line, const Drilling& drilling);
@@ -133,7 +133,7 @@ enum class MachinePosition : std::uint8_t {
 [[nodiscard]] cl::Outcome set_work_offset(State& s, const Line& line, int tenths);
 /// CYCL DEF 247 of Klartext: a row of the preset table.
 void set_preset(State& s, const Line& line, int row);
-/// Before every motion: one under another offset than the last needs the places of both.
+/// Before every motion: one under another offset than the last needs the positions of both.
 [[nodiscard]] cl::Outcome check_work_offset(State& s, const Line& line);
 [[nodiscard]] cl::Outcome set_unit(State& s, cl::LengthUnit unit);
 

@@ -10,7 +10,7 @@
 namespace meridian::nc {
 namespace {
 
-constexpr double kLongestStep_deg = 30;  // so that no whole turn hides between two places
+constexpr double kLongestStep_deg = 30;  // so that no whole turn hides between two points
 constexpr double kSameAxis_rad = 1e-9;
 
 double before(const std::vector<RotaryAt>& from, const std::string& address) {

@@ -18,7 +18,7 @@ constexpr std::string_view kLetters = "XYZABCUVW";
   return text.size() == 1 && kLetters.find(text[0]) != std::string_view::npos;
 }
 
-/// Whether the stage's sliders stand in the place of joint `i`.
+/// Whether the stage's sliders stand in place of joint `i`.
 [[nodiscard]] bool is_carried(const MachineModel& model, int i) {
   return has_stage(model) && (i == model.stage.linear_joint || i == model.stage.rotary_joint);
 }

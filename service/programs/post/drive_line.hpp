@@ -6,7 +6,7 @@
 
 namespace meridian::post {
 
-/// What the joints do while every drive runs evenly from one place to another: the largest of the
+/// What the joints do while every drive runs evenly from one point to another: the largest of the
 /// first and second derivative of each by the share of the way, which runs from 0 to 1. Units: mm,
 /// rad.
 struct DriveLine {

@@ -34,8 +34,8 @@ struct BlockEnd {
 /// halves and doubles finds, and gives the end of each to `take`.
 ///
 /// Between two ends the controller's motion is compared with the CL path at kPlaces places by
-/// forward kinematics, and what can lie between the places is bounded: there the deviation e obeys
-/// |e| <= max at the places + |e''|/(8 n²), and |e''| <= Ω² ρ + 2 Ω L + what joints and path bend,
+/// forward kinematics, and what can lie between the points is bounded: there the deviation e obeys
+/// |e| <= max at the points + |e''|/(8 n²), and |e''| <= Ω² ρ + 2 Ω L + what joints and path bend,
 /// with Ω the turn of all rotary joints, L the way of all linear ones, ρ the largest distance of
 /// the tip from a rotary axis (docs/postprocessor.md). Rounded words are what is compared.
 ///
@@ -56,7 +56,7 @@ class Subdivider {
  private:
   static constexpr int kSamples = 8;
 
-  /// A place on the piece with what the bound needs to know there.
+  /// A point on the piece with what the bound needs to know there.
   struct Sample {
     BlockEnd end;
     JointVector exact{};  ///< not rounded: reference of the next

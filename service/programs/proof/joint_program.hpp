@@ -31,7 +31,7 @@ struct ProgramStep {
   std::uint32_t line = 0;
   int tool = 0;            ///< kTool
   JointVector drives{};    ///< where the line ends, mm or rad, in drive order
-  bool is_placed = false;  ///< every drive's place is known
+  bool is_placed = false;  ///< every drive's position is known
   /// Of a program with tool-centre control: tip and axis where the line ends, in place of drives.
   std::optional<ToolPose> tool_pose = std::nullopt;
 };

@@ -37,7 +37,8 @@ struct ProgramReport {
   std::uint64_t moves = 0;     ///< of the program, on the path
   std::uint64_t motions = 0;   ///< of the CL file
   std::uint64_t sections = 0;  ///< from one tool change to the next
-  std::uint64_t rewinds = 0;  ///< off the part and back to the same place, one turn or more farther
+  std::uint64_t rewinds =
+      0;  ///< off the part and back to the same position, one turn or more farther
   double tip_length_mm = 0;
   ProgramPeak tip_mm, axis_rad;
   std::vector<ProgramFinding> findings;

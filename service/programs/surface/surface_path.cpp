@@ -119,7 +119,7 @@ class Cover {
                        "allow more chord error or scallop, or cover less of the patch"};
   }
 
-  /// Chord error of the step between two places of a way; `is_along`: the way is a line.
+  /// Chord error of the step between two points of a way; `is_along`: the way is a line.
   std::optional<double> step_error(double fixed, double from, double to, bool is_along) {
     const auto a = is_along ? contact(from, fixed) : contact(fixed, from);
     const auto b = is_along ? contact(to, fixed) : contact(fixed, to);

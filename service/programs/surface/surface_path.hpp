@@ -45,7 +45,7 @@ struct PathFault {
   std::string remedy;
 };
 
-/// Covers the patch. Faults: a place without normal, a crease, a bound that this cutter cannot
+/// Covers the patch. Faults: a point without normal, a crease, a bound that this cutter cannot
 /// keep, more than kMaxContacts. Source: docs/surface.md, chapter 3. Proof:
 /// tests/unit/surface/surface_path_test.cpp.
 [[nodiscard]] Expected<SurfacePath, PathFault> cover(const ContactRule& rule,

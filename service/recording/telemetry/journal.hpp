@@ -12,7 +12,7 @@
 
 namespace meridian::telemetry {
 
-/// Puts `content` in the place of what `path` holds, so that after a crash or a loss of power
+/// Puts `content` in place of what `path` holds, so that after a crash or a loss of power
 /// either is there and whole: a new file, synced, renamed, its folder synced. 0, or the errno of
 /// what failed; then the old one stands. Blocks as long as the disk does.
 [[nodiscard]] int replace_file(const std::filesystem::path& path, const std::string& content);

@@ -127,7 +127,7 @@ TEST(SingleBlock, LeavesNoEndOutBehindAHold) {
   EXPECT_GT(holds_while_braking, test::draws(20));
 }
 
-/// On and off, holds and overrides at any instant: where it rests it rests at the same places as
+/// On and off, holds and overrides at any instant: where it rests it rests at the same positions as
 /// ever, and after every rest at the very next end, as long as it is on.
 TEST(SingleBlock, RestsExactlyAtEndsWhateverTheOperatorDoes) {
   LimitShares worst;

@@ -72,7 +72,7 @@ TEST(StoppingTime, IsWithinAQuarterOfTheLeastTime) {
               ratios.size(), ratios[ratios.size() / 2], ratios[ratios.size() * 99 / 100],
               ratios.back());
   EXPECT_LE(ratios.back(), budget.factor);
-  // Where limits change along a leg the plan brakes with all that they give at each place: a hold
+  // Where limits change along a leg the plan brakes with all that they give at each point: a hold
   // of constant jerk may follow it first, as on smooth plans, and has their budgets.
   std::sort(shaped.begin(), shaped.end());
   ASSERT_GT(shaped.size(), 100u);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A 6R robot whose roll is driven: the tip is the pose's, the axis the nearest that the wrist has
-// with that roll. Arms well inside their reach, wrists at, near and off their singular place.
+// with that roll. Arms well inside their reach, wrists at, near and off their singularity.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>

@@ -11,8 +11,8 @@
 namespace meridian::config {
 namespace {
 
-/// One mistake: the first place of `good` in the shipped file is replaced by `bad`. Value, allowed
-/// and remedy are looked for inside those of the message.
+/// One mistake: the first occurrence of `good` in the shipped file is replaced by `bad`. Value,
+/// allowed and remedy are looked for inside those of the message.
 struct Mistake {
   const char* name;
   const char* good;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// G28 and G53: moves to places of the machine.
+// G28 and G53: moves to positions of the machine.
 #include <gtest/gtest.h>
 
 #include "meridian/kinematics/kinematics.hpp"

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kBegin = 0.3;  // u of the span
 
-/// Deviation in tolerances at one place.
+/// Deviation in tolerances at one point.
 double deviation_at(const BandPolyline& line, const PoseQuartic& c, double x) {
   const double u = kBegin + x;
   const std::int64_t i = line.segment_at(u, 0);

@@ -58,7 +58,7 @@ double distance_to_segment(const Vector3& p, const Vector3& a, const Vector3& b)
   return (p - a - share * (b - a)).norm();
 }
 
-/// Largest distance of exact contact and tip from the straight blocks, by 99 places in each.
+/// Largest distance of exact contact and tip from the straight blocks, by 99 points in each.
 double dense_error(const ContactRule& rule, const SurfacePath& path) {
   std::vector<Contact> points;
   for (const SurfacePath::Line& line : path.lines) {

@@ -34,7 +34,7 @@ struct NameRow {
 
 /// What the names of a line say about its other words.
 struct NameOutcome {
-  bool has_machine_position = false;  ///< SUPA: they are places of the machine
+  bool has_machine_position = false;  ///< SUPA: they are positions of the machine
   bool has_frame = false;             ///< they are those of a frame, which is in force now
   enum class Holes : std::uint8_t {
     kAsBefore,

@@ -95,7 +95,7 @@ struct CheckReport {
   double tip_tolerance_mm = 0, axis_tolerance_rad = 0;
   double pole_tolerance_rad = 0;          ///< of the axis within kPoleReach_rad of the pole
   Peak tip_mm, axis_rad;                  ///< at the setpoints
-  Peak tip_between_mm, axis_between_rad;  ///< at three places between neighbouring setpoints
+  Peak tip_between_mm, axis_between_rad;  ///< at three points between neighbouring setpoints
   Peak vertex_mm;                         ///< `line`: of the block that ends there
   std::uint64_t vertices = 0, vertices_in_gaps = 0;
   std::uint64_t rewinds = 0;  ///< turns of the redundant joint off the part

@@ -111,7 +111,7 @@ class Comparison {
 };
 
 /// How far `a` is ahead of `b` in the program: by plan time, and at one plan time, which is a rest,
-/// by block. Only the sign counts; 0: the same place.
+/// by block. Only the sign counts; 0: the same position.
 [[nodiscard]] double lead(const RecordingRow& a, const RecordingRow& b) noexcept {
   const double earlier_by = a.plan_time_s - b.plan_time_s;
   if (std::abs(earlier_by) > kSamePlanTime_s) return earlier_by;

@@ -15,7 +15,7 @@ namespace meridian::record {
 /// and back on another branch, with the tip at rest. Anything else is a finding, also any such row
 /// on a machine whose file has no rewind.
 ///
-/// The place where the tool rested is the row before. Where up to kMaxMissing rows are missing
+/// The point where the tool rested is the row before. Where up to kMaxMissing rows are missing
 /// there, it is known to the way that the tool made meanwhile: from rest it grows faster, so less
 /// than the step seen next for every cycle; the same at the other end. Where more are missing the
 /// line alone is checked. Units: mm, rad. Frame: W.
@@ -55,7 +55,7 @@ class RewindCheck {
   JointVector rest_{};       ///< where the tool left, or the first row
   ToolPose begin_{Vector3::Zero(), Vector3::UnitZ()};
   double missing_ = 0;                   ///< rows between rest and the first one
-  double slack_ = 0;                     ///< of the place where the tool left, mm
+  double slack_ = 0;                     ///< of the point where the tool left, mm
   double off_ = 0, step_ = 0, top_ = 0;  ///< of the last row; per cycle; where the joint turns. mm
   std::uint64_t rows_ = 0;               ///< of this rewind
   std::uint64_t count_ = 0, bad_ = 0;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kPosition_mm = 1e-11;  // of the tip, by rounding of the joints
 constexpr double kMinFeed = 1e-12;      // mm/s
 constexpr double kMinTurn_rad_per_s = 1e-9;
-/// In inverse time blocks within this way of a place say how fast tip and axis may be there.
+/// In inverse time blocks within this way of a point say how fast tip and axis may be there.
 constexpr double kSpeedReach_mm = 5;
 constexpr double kNoFeed = PathElement::kNoFeed;
 

@@ -18,7 +18,7 @@ class TimeCheck {
   TimeCheck(const CheckedPath& path, double tolerance_mm, double period_s,
             const CheckOptions& options);
 
-  /// The farthest place on the way that was matched, and the one that is surely passed; cycles go
+  /// The farthest point on the way that was matched, and the one that is surely passed; cycles go
   /// up.
   void add(double matched, double passed, std::uint64_t cycle);
   void finish(CheckReport& report) const;

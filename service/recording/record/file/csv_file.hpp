@@ -43,7 +43,7 @@ class CsvRow {
   char* at_;
 };
 
-/// Whether a symbolic link in the place of a file leads to the file that is written.
+/// Whether a symbolic link in place of a file leads to the file that is written.
 enum class Links { kFollowed, kRefused };
 
 /// A text file that is written row by row: rows gather in a buffer of fixed size that goes to the
@@ -53,7 +53,7 @@ class CsvFile {
   /// Creates or empties the file.
   [[nodiscard]] static Expected<CsvFile, RecordError> create(const std::string& path,
                                                              Links links = Links::kFollowed);
-  /// Creates it in the place of what has that name; a link is not followed.
+  /// Creates it in place of what has that name; a link is not followed.
   [[nodiscard]] static Expected<CsvFile, RecordError> create_anew(const std::string& path);
   /// Writes what is buffered; a failure is lost here, so call close() where it matters.
   ~CsvFile();
