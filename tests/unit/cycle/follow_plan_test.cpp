@@ -46,8 +46,8 @@ TEST(FollowPlan, RunsCutsAtTheFeedOverrideAndRapidsAtTheirs) {
   EXPECT_NEAR(speed_with(MotionKind::kCut, 0.6, 0.3), 0.6 * cut, 1e-6);
   EXPECT_NEAR(speed_with(MotionKind::kRapid, 0.6, 0.3), 0.3 * cut, 1e-6);
   EXPECT_NEAR(speed_with(MotionKind::kApproach, 0.6, 0.3), 0.3 * cut, 1e-6);
-  EXPECT_NEAR(speed_with(MotionKind::kUnwind, 0.6, 0.3), 0.3 * cut, 1e-6) << "the slower one";
-  EXPECT_NEAR(speed_with(MotionKind::kUnwind, 0.4, 0.7), 0.4 * cut, 1e-6);
+  EXPECT_NEAR(speed_with(MotionKind::kRewind, 0.6, 0.3), 0.3 * cut, 1e-6) << "the slower one";
+  EXPECT_NEAR(speed_with(MotionKind::kRewind, 0.4, 0.7), 0.4 * cut, 1e-6);
 }
 
 TEST(FollowPlan, RunsWhatWasPlannedFasterAtTheOverrideOverThatFactor) {

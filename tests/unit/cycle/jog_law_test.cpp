@@ -109,20 +109,20 @@ TEST(JogLaw, IsNoFasterThanTheRatesAndRestsForNoNumber) {
 }
 
 TEST(JogLaw, ComesToRestExactlyAtTheEndOfItsRoom) {
-  for (const double way : {1.0, -1.0}) {
+  for (const double sign : {1.0, -1.0}) {
     for (const double room : {0.001, 0.3, 5.0, 40.0}) {
-      JogAxis axis = axis_at(0, way > 0 ? -500 : -room, way > 0 ? room : 500);
-      double last = 0, most = 0;
+      JogAxis axis = axis_at(0, sign > 0 ? -500 : -room, sign > 0 ? room : 500);
+      double last = 0, highest = 0;
       for (int n = 0; n < 1500; ++n) {
-        follow(axis, way * 80, kPeriod_s);
-        most = std::max(most, std::abs(axis.at.v));
-        EXPECT_GE((axis.at.q - last) * way, -1e-12);
+        follow(axis, sign * 80, kPeriod_s);
+        highest = std::max(highest, std::abs(axis.at.v));
+        EXPECT_GE((axis.at.q - last) * sign, -1e-12);
         last = axis.at.q;
       }
-      EXPECT_NEAR(axis.at.q, way * room, 1e-9);
+      EXPECT_NEAR(axis.at.q, sign * room, 1e-9);
       EXPECT_TRUE(axis.is_at_rest());
       if (room == 40.0) {
-        EXPECT_NEAR(most, 80, 1e-9) << "no sooner than it has to";
+        EXPECT_NEAR(highest, 80, 1e-9) << "no sooner than it has to";
       }
     }
   }
@@ -147,14 +147,14 @@ TEST(JogLaw, TurnsBackFromTheEndOfItsRoom) {
 }
 
 TEST(JogLaw, OutsideOfItsRoomItMovesInwardsAlone) {
-  for (const double way : {1.0, -1.0}) {
-    JogAxis axis = axis_at(way * 12, -10, 10);
-    for (int n = 0; n < 500; ++n) follow(axis, way * 50, kPeriod_s);
-    EXPECT_NEAR(axis.at.q, way * 12, 1e-9) << "not outwards";
-    for (int n = 0; n < 30; ++n) follow(axis, -way * 50, kPeriod_s);
-    EXPECT_LT(axis.at.q * way, 12);
-    for (int n = 0; n < 3000; ++n) follow(axis, -way * 50, kPeriod_s);
-    EXPECT_NEAR(axis.at.q, -way * 10, 1e-9) << "and no farther than to the other end";
+  for (const double sign : {1.0, -1.0}) {
+    JogAxis axis = axis_at(sign * 12, -10, 10);
+    for (int n = 0; n < 500; ++n) follow(axis, sign * 50, kPeriod_s);
+    EXPECT_NEAR(axis.at.q, sign * 12, 1e-9) << "not outwards";
+    for (int n = 0; n < 30; ++n) follow(axis, -sign * 50, kPeriod_s);
+    EXPECT_LT(axis.at.q * sign, 12);
+    for (int n = 0; n < 3000; ++n) follow(axis, -sign * 50, kPeriod_s);
+    EXPECT_NEAR(axis.at.q, -sign * 10, 1e-9) << "and no farther than to the other end";
     EXPECT_TRUE(axis.is_at_rest());
   }
 }

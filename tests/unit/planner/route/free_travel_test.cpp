@@ -137,10 +137,10 @@ TEST(FreeTravel, FollowsAJointThatIsDriven) {
 TEST(FreeTravel, LetsAJointLeaveTheEndOfTravelSlowly) {
   Followed path;
   const double sense = path.joints_at(1, path.start)[3] > path.start[3] ? 1 : -1;
-  for (const double way : {sense, -sense}) {
+  for (const double sign : {sense, -sense}) {
     for (std::size_t n = 0; n < path.spans.size(); ++n) {  // 2e-5 rad per span
-      const auto lean = [way](double u) {
-        return Lean{0.2 * std::cos(2e-5 * u), way * 0.2 * std::sin(2e-5 * u)};
+      const auto lean = [sign](double u) {
+        return Lean{0.2 * std::cos(2e-5 * u), sign * 0.2 * std::sin(2e-5 * u)};
       };
       const int number = static_cast<int>(n);
       path.spans[n].band = leaning_span(number, lean(number), lean(number + 1));
@@ -148,7 +148,7 @@ TEST(FreeTravel, LetsAJointLeaveTheEndOfTravelSlowly) {
     // From one winding below zero, and one above.
     for (const double turn : {-kTurn_rad, kTurn_rad}) {
       const double begin = path.start[3] + turn;
-      const bool is_upwards = way == sense;
+      const bool is_upwards = sign == sense;
       path.set_travel(is_upwards ? begin : -100, is_upwards ? 100 : begin);
       EXPECT_EQ(path.follow(turn).first, -1);
       path.set_travel(is_upwards ? -100 : begin, is_upwards ? begin : 100);

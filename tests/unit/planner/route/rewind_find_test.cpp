@@ -22,10 +22,10 @@ using approach::cut;
 
 /// A look ahead that answers what a test says, and remembers what it was asked.
 struct Answers : PoleLookAhead {
-  void ask(const Start& start, std::span<const RouteAhead> ways) noexcept override {
+  void ask(const Start& start, std::span<const RouteAhead> routes) noexcept override {
     asked = start;
-    asked_ways.assign(ways.begin(), ways.end());
-    found = asked_ways;
+    asked_routes.assign(routes.begin(), routes.end());
+    found = asked_routes;
     for (std::size_t n = 0; n < found.size(); ++n) {
       found[n].carries = found[n].free < carries_below ? 9 : 4;
       found[n].time_s = 100;
@@ -35,7 +35,7 @@ struct Answers : PoleLookAhead {
   [[nodiscard]] std::span<const RouteAhead> routes() const noexcept override { return found; }
   [[nodiscard]] bool is_cut_short() const noexcept override { return is_short; }
   Start asked;
-  std::vector<RouteAhead> asked_ways, found;
+  std::vector<RouteAhead> asked_routes, found;
   bool is_known = true, is_short = false;
   double carries_below = -1e9;
 };

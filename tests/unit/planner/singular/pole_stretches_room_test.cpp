@@ -23,15 +23,15 @@ TEST(PoleStretches, GoOnBehindAPlaceOfAStretchThatIsLong) {
     ASSERT_LT(one.next, 300U);
   }
   EXPECT_EQ(one.next, 81U) << "four reaches, and the span whose last probe waits for the next";
-  const PolePass& pass = one.out.place;
-  EXPECT_EQ(place.at_begin, PoleJoin::kRest);
-  EXPECT_EQ(place.at_end, PoleJoin::kHeld);
-  EXPECT_NEAR(place.end, 30, 1e-9) << "where it is closest, well ahead of what is known";
+  const PolePass& pass = one.out.pass;
+  EXPECT_EQ(pass.at_begin, PoleJoin::kRest);
+  EXPECT_EQ(pass.at_end, PoleJoin::kHeld);
+  EXPECT_NEAR(pass.end, 30, 1e-9) << "where it is closest, well ahead of what is known";
   EXPECT_EQ(one.out.last, 180);
-  EXPECT_GT(place.seen_end, 80 - 1e-9);
-  EXPECT_EQ(place.known_end, place.seen_end);
+  EXPECT_GT(pass.seen_end, 80 - 1e-9);
+  EXPECT_EQ(pass.known_end, pass.seen_end);
   EXPECT_TRUE(one.out.has_room);
-  EXPECT_EQ(one.stretches.place(), 181);
+  EXPECT_EQ(one.stretches.probe(), 181);
 }
 
 TEST(PoleStretches, CountALongStretchFromItsBegin) {
@@ -47,8 +47,8 @@ TEST(PoleStretches, CountALongStretchFromItsBegin) {
     ASSERT_LT(one.next, 300U);
   }
   EXPECT_NEAR(one.out.close_begin, 29, kProbe_mm + 1e-9);
-  EXPECT_NEAR(one.out.place.seen_end, one.out.close_begin + 80, 1 + kProbe_mm);
-  EXPECT_EQ(one.out.place.at_end, PoleJoin::kHeld);
+  EXPECT_NEAR(one.out.pass.seen_end, one.out.close_begin + 80, 1 + kProbe_mm);
+  EXPECT_EQ(one.out.pass.at_end, PoleJoin::kHeld);
 }
 
 TEST(PoleStretches, TakeForOneStretchWhatIsNearThePoleInBetween) {
@@ -64,12 +64,12 @@ TEST(PoleStretches, LeaveRoomToTheNextStretchBehind) {
   ASSERT_EQ(one.ask(), Answer::kFound);
   const double end = 60 + 7 * kProbe_mm, other = 70 - 7 * kProbe_mm;
   EXPECT_NEAR(one.out.close_end, end, 1e-9);
-  EXPECT_NEAR(one.out.place.end, end + 0.49 * (other - end), 1e-9);
+  EXPECT_NEAR(one.out.pass.end, end + 0.49 * (other - end), 1e-9);
   one.settled.is_begun = true;
-  one.settled.end = one.out.place.end;
+  one.settled.end = one.out.pass.end;
   ASSERT_EQ(one.ask(), Answer::kFound);
   EXPECT_NEAR(one.out.close_begin, other, 1e-9);
-  EXPECT_NEAR(one.out.place.begin, other - 0.98 * (other - one.settled.end), 1e-9);
+  EXPECT_NEAR(one.out.pass.begin, other - 0.98 * (other - one.settled.end), 1e-9);
 }
 
 TEST(PoleStretches, CanBeShortenedWhereTheExactWayLeadsThere) {
@@ -77,24 +77,24 @@ TEST(PoleStretches, CanBeShortenedWhereTheExactWayLeadsThere) {
   ASSERT_EQ(one.ask(), Answer::kFound);
   PoleStretch both = one.out, none = one.out, snapped = one.out, rest = one.out, held = one.out;
   EXPECT_TRUE(one.stretches.shorten(both, 5));
-  EXPECT_NEAR(both.place.begin, both.close_begin - 5, 1e-9);
-  EXPECT_NEAR(both.place.end, both.close_end + 5, 1e-9);
+  EXPECT_NEAR(both.pass.begin, both.close_begin - 5, 1e-9);
+  EXPECT_NEAR(both.pass.end, both.close_end + 5, 1e-9);
   EXPECT_FALSE(one.stretches.shorten(none, 30));
-  EXPECT_EQ(none.place.begin, one.out.place.begin);
-  EXPECT_EQ(none.place.end, one.out.place.end);
+  EXPECT_EQ(none.pass.begin, one.out.pass.begin);
+  EXPECT_EQ(none.pass.end, one.out.pass.end);
   // No part of a span that is shorter than 0.1 µm is left over.
   EXPECT_TRUE(one.stretches.shorten(snapped, 5 * kProbe_mm + 5e-5));
-  EXPECT_EQ(snapped.place.begin, 58);
-  EXPECT_EQ(snapped.place.end, 62);
-  rest.place.at_begin = rest.place.at_end = PoleJoin::kRest;
+  EXPECT_EQ(snapped.pass.begin, 58);
+  EXPECT_EQ(snapped.pass.end, 62);
+  rest.pass.at_begin = rest.pass.at_end = PoleJoin::kRest;
   EXPECT_TRUE(one.stretches.shorten(rest, 5));
-  EXPECT_EQ(rest.place.at_begin, PoleJoin::kExact);
-  EXPECT_EQ(rest.place.end, one.out.place.end) << "a rest at the end stays";
-  held.place.at_begin = PoleJoin::kHeld;
+  EXPECT_EQ(rest.pass.at_begin, PoleJoin::kExact);
+  EXPECT_EQ(rest.pass.end, one.out.pass.end) << "a rest at the end stays";
+  held.pass.at_begin = PoleJoin::kHeld;
   EXPECT_TRUE(one.stretches.shorten(held, 5));
-  EXPECT_EQ(held.place.begin, one.out.place.begin);
+  EXPECT_EQ(held.pass.begin, one.out.pass.begin);
   held = one.out;
-  held.place.at_begin = held.place.at_end = PoleJoin::kHeld;
+  held.pass.at_begin = held.pass.at_end = PoleJoin::kHeld;
   EXPECT_FALSE(one.stretches.shorten(held, 5));
 }
 

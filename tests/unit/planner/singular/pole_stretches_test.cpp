@@ -22,14 +22,14 @@ TEST(PoleStretches, FindTheStretchAboutThePoleAndTheRoomBesideIt) {
   EXPECT_EQ(one.out.last, 367);
   EXPECT_NEAR(one.out.nearest, one.out.close_begin, 1e-9);
   EXPECT_TRUE(one.out.has_room);
-  const PolePass& pass = one.out.place;
-  EXPECT_NEAR(place.begin, one.out.close_begin - kPoleReach_mm, 1e-9);
-  EXPECT_NEAR(place.end, one.out.close_end + kPoleReach_mm, 1e-9);
-  EXPECT_NEAR(place.known_end, one.out.close_end + 2 * kPoleReach_mm, 1e-9);
-  EXPECT_EQ(place.at_begin, PoleJoin::kExact);
-  EXPECT_EQ(place.at_end, PoleJoin::kExact);
-  EXPECT_EQ(place.branch, 1);
-  EXPECT_EQ(one.stretches.place(), 368);
+  const PolePass& pass = one.out.pass;
+  EXPECT_NEAR(pass.begin, one.out.close_begin - kPoleReach_mm, 1e-9);
+  EXPECT_NEAR(pass.end, one.out.close_end + kPoleReach_mm, 1e-9);
+  EXPECT_NEAR(pass.known_end, one.out.close_end + 2 * kPoleReach_mm, 1e-9);
+  EXPECT_EQ(pass.at_begin, PoleJoin::kExact);
+  EXPECT_EQ(pass.at_end, PoleJoin::kExact);
+  EXPECT_EQ(pass.branch, 1);
+  EXPECT_EQ(one.stretches.probe(), 368);
   EXPECT_FALSE(one.stretches.find_next(one.settled)) << "there is no other";
 }
 
@@ -57,7 +57,7 @@ TEST(PoleStretches, FindAMinimumThatIsFartherOffWithoutRoomForAnotherWay) {
   EXPECT_TRUE(one.stretches.is_minimum(360));
   EXPECT_FALSE(one.stretches.is_minimum(359));
   EXPECT_FALSE(one.stretches.is_minimum(361));
-  EXPECT_EQ(one.stretches.place(), 361);
+  EXPECT_EQ(one.stretches.probe(), 361);
   one.stretches.go_back_to(360);
   one.settled.end = 59.99;
   EXPECT_EQ(one.ask(), Answer::kFound);
@@ -66,7 +66,7 @@ TEST(PoleStretches, FindAMinimumThatIsFartherOffWithoutRoomForAnotherWay) {
 }
 
 TEST(PoleStretches, CompareTheLastProbeWithTheEndOfThePath) {
-  const PoleProbes::Place last = 40 * PoleProbes::kProbes - 1;
+  const PoleProbes::ProbeIndex last = 40 * PoleProbes::kProbes - 1;
   Stretched on(40, passing(0.03, 39.8)), before(40, passing(0.03, 40)),
       on_rise(40, passing(0.03, 39));
   EXPECT_TRUE(on.stretches.is_minimum(last));
@@ -102,47 +102,47 @@ TEST(PoleStretches, PassOverWhatIsSettledAlready) {
 TEST(PoleStretches, BeginWhereTheMachineRestsIfThePoleIsNearTheBeginOfThePath) {
   Stretched one(120, passing(0.0005, 10));
   ASSERT_EQ(one.ask(), Answer::kFound);
-  EXPECT_EQ(one.out.place.at_begin, PoleJoin::kRest);
-  EXPECT_EQ(one.out.place.begin, 0);
+  EXPECT_EQ(one.out.pass.at_begin, PoleJoin::kRest);
+  EXPECT_EQ(one.out.pass.begin, 0);
   EXPECT_TRUE(one.out.has_room);
   Stretched begun(120, passing(0.0005, 10));
   begun.settled.is_begun = true;
   ASSERT_EQ(begun.ask(), Answer::kFound);
-  EXPECT_EQ(begun.out.place.at_begin, PoleJoin::kExact);
+  EXPECT_EQ(begun.out.pass.at_begin, PoleJoin::kExact);
   const double close = 10 - 7 * kProbe_mm;
-  EXPECT_NEAR(begun.out.place.begin, close - 0.98 * close, 1e-9);
+  EXPECT_NEAR(begun.out.pass.begin, close - 0.98 * close, 1e-9);
 }
 
 TEST(PoleStretches, EndAtRestWhereThePathEndsBesideThePole) {
   Stretched at_rest(62, passing(0.0005));  // it ends 0.008 rad off the pole
   ASSERT_EQ(at_rest.ask(), Answer::kFound);
-  EXPECT_EQ(at_rest.out.place.at_end, PoleJoin::kRest);
-  EXPECT_EQ(at_rest.out.place.end, 62);
-  EXPECT_EQ(at_rest.out.place.known_end, 62);
+  EXPECT_EQ(at_rest.out.pass.at_end, PoleJoin::kRest);
+  EXPECT_EQ(at_rest.out.pass.end, 62);
+  EXPECT_EQ(at_rest.out.pass.known_end, 62);
   Stretched exact(63, passing(0.0005));  // 0.012 rad
   ASSERT_EQ(exact.ask(), Answer::kFound);
-  EXPECT_EQ(exact.out.place.at_end, PoleJoin::kExact);
+  EXPECT_EQ(exact.out.pass.at_end, PoleJoin::kExact);
   const double close = 60 + 7 * kProbe_mm;
-  EXPECT_NEAR(exact.out.place.end, close + 0.98 * (63 - close), 1e-9);
+  EXPECT_NEAR(exact.out.pass.end, close + 0.98 * (63 - close), 1e-9);
   Stretched last(60, passing(0.0005));  // closest at its very end
   ASSERT_EQ(last.ask(), Answer::kFound);
-  EXPECT_EQ(last.out.place.end, 60);
-  EXPECT_EQ(last.out.place.at_end, PoleJoin::kRest);
+  EXPECT_EQ(last.out.pass.end, 60);
+  EXPECT_EQ(last.out.pass.at_end, PoleJoin::kRest);
 }
 
 TEST(PoleStretches, GoOnFromAStretchWhoseEndIsHeld) {
   Stretched one(120, passing(0.0005));
   one.settled = {60.1, true, true, true, 0};
   ASSERT_EQ(one.ask(), Answer::kFound);
-  EXPECT_EQ(one.out.place.at_begin, PoleJoin::kHeld);
-  EXPECT_EQ(one.out.place.begin, 60.1);
+  EXPECT_EQ(one.out.pass.at_begin, PoleJoin::kHeld);
+  EXPECT_EQ(one.out.pass.begin, 60.1);
   EXPECT_EQ(one.out.close_begin, 60.1);
   EXPECT_NEAR(one.out.close_end, 60 + 7 * kProbe_mm, 1e-9);
   Stretched far(120, passing(0.0005));  // and though nothing is close there any more
   far.settled = {90.1, true, true, true, 0};
   ASSERT_EQ(far.ask(), Answer::kFound);
-  EXPECT_EQ(far.out.place.at_begin, PoleJoin::kHeld);
-  EXPECT_EQ(far.out.place.begin, 90.1);
+  EXPECT_EQ(far.out.pass.at_begin, PoleJoin::kHeld);
+  EXPECT_EQ(far.out.pass.begin, 90.1);
 }
 
 TEST(PoleStretches, EndWhereAMinimumBehindTheLastProbeIs) {
@@ -159,7 +159,7 @@ TEST(PoleStretches, LookAgainAtAllThatIsHeldBack) {
   Stretched one(120, passing(0.0005));
   ASSERT_EQ(one.ask(), Answer::kFound);
   one.stretches.begin_again();
-  EXPECT_EQ(one.stretches.place(), 0);
+  EXPECT_EQ(one.stretches.probe(), 0);
   ASSERT_EQ(one.ask(), Answer::kFound);
   EXPECT_EQ(one.out.first, 353);
   // Nothing is left of a path before that was close at the same place.

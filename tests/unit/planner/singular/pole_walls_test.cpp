@@ -36,15 +36,15 @@ struct Walled {
     };
     programmed.begin(programmed_at(0));
     for (int n = 1; n <= 120; ++n) programmed.add(n, programmed_at(n));
-    place.begin = 40;
-    place.end = 80;
-    place.joints = joints_at(40, 0);
+    pass.begin = 40;
+    pass.end = 80;
+    pass.joints = joints_at(40, 0);
   }
   [[nodiscard]] ToolPose pose_at(double u) const { return pose_of<double>(probes.span_at(u), u); }
   [[nodiscard]] JointVector joints_at(double u, int branch) const {
     return solve(model, kTool_mm, pose_at(u), branch, {}).q;
   }
-  [[nodiscard]] bool look() { return walls.look(task, place); }
+  [[nodiscard]] bool look() { return walls.look(task, pass); }
   /// The angle between the programmed axis and the one that the redundant joint gives.
   [[nodiscard]] double off_at(double u, double free) const {
     const auto at = solve_held(model, kTool_mm, pose_at(u), free);
@@ -128,12 +128,12 @@ TEST(PoleWalls, ArePinnedWhereTheExactWayBeginsOrEnds) {
   ASSERT_TRUE(exact.look());
   EXPECT_TRUE(exact.walls.nodes().front().is_pinned);
   EXPECT_TRUE(exact.walls.nodes().back().is_pinned);
-  rest.place.at_begin = rest.place.at_end = PoleJoin::kRest;
+  rest.pass.at_begin = rest.pass.at_end = PoleJoin::kRest;
   ASSERT_TRUE(rest.look());
   EXPECT_FALSE(rest.walls.nodes().front().is_pinned);
   EXPECT_FALSE(rest.walls.nodes().back().is_pinned);
-  held.place.at_end = PoleJoin::kHeld;
-  held.place.seen_end = 90;
+  held.pass.at_end = PoleJoin::kHeld;
+  held.pass.seen_end = 90;
   ASSERT_TRUE(held.look());
   EXPECT_EQ(held.walls.nodes().back().u, 90) << "as far as the stretch is known";
   const auto nodes = held.walls.nodes();
@@ -143,7 +143,7 @@ TEST(PoleWalls, ArePinnedWhereTheExactWayBeginsOrEnds) {
 TEST(PoleWalls, ThroughAGateTheShortestWayLeadsToTheOtherBranch) {
   Walled path(0.0005);
   ASSERT_TRUE(path.look());
-  const double begin = path.place.joints[3];
+  const double begin = path.pass.joints[3];
   const auto found = path.walls.find_courses(begin);
   ASSERT_GT(found.size(), 2U);
   const std::vector<PoleWalls::Course> courses(found.begin(), found.end());
@@ -178,7 +178,7 @@ TEST(PoleWalls, ThroughAGateTheShortestWayLeadsToTheOtherBranch) {
 TEST(PoleWalls, WithoutAGateTheWayStaysOnItsBranch) {
   Walled path(0.006);
   ASSERT_TRUE(path.look());
-  const auto courses = path.walls.find_courses(path.place.joints[3]);
+  const auto courses = path.walls.find_courses(path.pass.joints[3]);
   ASSERT_EQ(courses.size(), 1U);
   EXPECT_EQ(courses[0].side, 0);
   EXPECT_NEAR(courses[0].turned, std::numbers::pi - 2 * std::atan(0.006 / 0.08), 0.05);
@@ -186,7 +186,7 @@ TEST(PoleWalls, WithoutAGateTheWayStaysOnItsBranch) {
 
 TEST(PoleWalls, LeadNowhereOutsideOfTravel) {
   Walled path(0.0005);
-  const double begin = path.place.joints[3];
+  const double begin = path.pass.joints[3];
   path.model.joints[3].is_endless = false;
   path.model.joints[3].limits.travel_min = begin - 0.5;
   path.model.joints[3].limits.travel_max = begin + 0.5;
