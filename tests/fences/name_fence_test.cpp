@@ -8,7 +8,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-NameRules project_rules() {
+NameRules name_rules() {
   return read_name_rules(read_file(MERIDIAN_SOURCE_DIR, "tests/fences/private_words.txt"));
 }
 
@@ -20,7 +20,7 @@ TEST(NameFence, NoNameOfTheProjectHasAPrivateWord) {
     }
   }
   EXPECT_GT(files.size(), 1000U) << "the fence saw hardly any file";
-  EXPECT_EQ(to_text(find_private_names(files, project_rules())), "");
+  EXPECT_EQ(to_text(find_private_names(files, name_rules())), "");
 }
 
 TEST(NameFence, SplitsNamesIntoWords) {
@@ -34,14 +34,14 @@ TEST(NameFence, CatchesAPrivateWordInCodeAlone) {
   const SourceFile file{"a.cpp",
                         {"// the way to it", "double way_mm = 0;", "auto said = \"way\";",
                          "struct PolePlace {};", "int replaced = release(kLease);"}};
-  EXPECT_EQ(to_text(find_private_names({file}, project_rules())),
+  EXPECT_EQ(to_text(find_private_names({file}, name_rules())),
             "a.cpp:2: private word: way_mm\na.cpp:4: private word: PolePlace\n");
 }
 
 TEST(NameFence, PassesNamesOfTestsAndThoseThatAreAllowed) {
   const SourceFile file{"a.cpp",
                         {"TEST(Router, GoesTheWayThatIsLeft) {", "place_workpiece(model, frame);"}};
-  EXPECT_EQ(to_text(find_private_names({file}, project_rules())), "");
+  EXPECT_EQ(to_text(find_private_names({file}, name_rules())), "");
 }
 
 TEST(NameFence, RefusesARuleThatIsNone) {
