@@ -85,8 +85,8 @@ TEST(JointChecks, SeeHowFarJointsBendOffTheLineIntoAKeepOutBox) {
   other.max = {0, 0, 51};
   ASSERT_TRUE(model.keep_out.add(other));
   box.joints = 0b11;
-  box.min = {-1, 0.2};
-  box.max = {1, 1};
+  box.min = {-1.5, 0.2};
+  box.max = {-0.5, 1};
   ASSERT_TRUE(model.keep_out.add(box));
   const LimitedVector from = only(-1), to = only(1), d1 = only(1), none{};
   // Over h = 2 a second derivative of 0.3 bends by 1.25 · 4/8 · 0.3 = 0.1875.
