@@ -62,17 +62,17 @@ IntakeCheck::IntakeCheck(const MachineModel& model, const ToolLengths& tools,
                          std::uint64_t service_id)
     : model_(model), service_id_(service_id), check_(model, tools) {}
 
-dds::Credit IntakeCheck::on_request(const dds::SessionRequest& request, const Surroundings& around,
-                                    double tool_length_mm) {
-  return request.request == dds::SessionRequestKind::kOpen ? open(request, around, tool_length_mm)
-                                                           : close(request, around);
+dds::Credit IntakeCheck::on_request(const dds::SessionRequest& request,
+                                    const IntakeContext& context, double tool_length_mm) {
+  return request.request == dds::SessionRequestKind::kOpen ? open(request, context, tool_length_mm)
+                                                           : close(request, context);
 }
 
-dds::Credit IntakeCheck::open(const dds::SessionRequest& request, const Surroundings& around,
+dds::Credit IntakeCheck::open(const dds::SessionRequest& request, const IntakeContext& context,
                               double tool_length_mm) {
   if (request.session != 0 && request.session == session_) {
     is_lost_ = false;
-    return credit(around);
+    return credit(context);
   }
   if (const dds::Credit* last = find_ended(request.session)) return *last;
   const auto refused = [&](Verdict verdict, std::string text) {
@@ -86,7 +86,7 @@ dds::Credit IntakeCheck::open(const dds::SessionRequest& request, const Surround
                        (is_lost_ ? ", which is gone; enable the machine and abort to free it"
                                  : "; wait for its end, or enable the machine and abort it"));
   }
-  if (!around.is_tool_known) {
+  if (!context.is_tool_known) {
     return refused(Verdict::kRefusedProgram,
                    "which tool is in the spindle is not known: its change was given up, and the "
                    "action peer has not said yet whether it is done");
@@ -101,8 +101,8 @@ dds::Credit IntakeCheck::open(const dds::SessionRequest& request, const Surround
                             request.tip_tolerance_mm, request.axis_tolerance_rad);
   if (refusal.empty()) refusal = refusal_of_first_joints(request, model_, tool_length_mm);
   if (!refusal.empty()) return refused(Verdict::kRefusedProgram, std::move(refusal));
-  if ((request.policies & dds::kPolicyContainsActions) != 0 && !around.actions.is_there &&
-      !around.actions.is_ignored) {
+  if ((request.policies & dds::kPolicyContainsActions) != 0 && !context.actions.is_there &&
+      !context.actions.is_ignored) {
     return refused(Verdict::kRefusedProgram,
                    "the program has tool, spindle, coolant or stop words and nobody answers "
                    "actions; start the action peer or set auxiliary = \"ignore\"");
@@ -116,7 +116,7 @@ dds::Credit IntakeCheck::open(const dds::SessionRequest& request, const Surround
   newest_ = {};
   newest_.verdict = Verdict::kGood;
   newest_.text = message_ = "station " + request.station + " opened " + request.program;
-  return credit(around);
+  return credit(context);
 }
 
 dds::Credit IntakeCheck::refuse_program(const dds::SessionRequest& request, std::string why) {
@@ -124,28 +124,28 @@ dds::Credit IntakeCheck::refuse_program(const dds::SessionRequest& request, std:
   return stranger(request.session, Verdict::kRefusedProgram, std::move(why));
 }
 
-dds::Credit IntakeCheck::close(const dds::SessionRequest& request, const Surroundings& around) {
+dds::Credit IntakeCheck::close(const dds::SessionRequest& request, const IntakeContext& context) {
   if (request.session != session_ || !is_held()) {
     if (const dds::Credit* last = find_ended(request.session)) return *last;
     return stranger(request.session, Verdict::kClosed,
                     "session " + in_hex(request.session) + " is not open here");
   }
-  if (is_complete()) return credit(around);
+  if (is_complete()) return credit(context);
   if (next_ == 0) {
     return end_session(is_cut_off() ? newest_.verdict : Verdict::kClosed,
-                       is_cut_off() ? newest_.text : "closed before the first block", around);
+                       is_cut_off() ? newest_.text : "closed before the first block", context);
   }
-  if (is_cut_off()) return credit(around);
+  if (is_cut_off()) return credit(context);
   is_lost_ = true;
   change(SessionEvent::kRefused);
   newest_.verdict = Verdict::kClosed;
   newest_.text = message_ = "station " + request_.station + " closed before the end: the machine " +
                             "runs the " + number(next_) + " blocks that it has and stops";
-  return credit(around);
+  return credit(context);
 }
 
 std::optional<dds::Credit> IntakeCheck::on_batch(const dds::Batch& batch,
-                                                 const Surroundings& around, Accepted& accepted) {
+                                                 const IntakeContext& context, Accepted& accepted) {
   accepted.count = 0;
   const bool is_intact = batch.count <= dds::kBatchBlocks && dds::batch_crc(batch) == batch.crc;
   if (!is_held() || batch.session != session_) {
@@ -166,14 +166,14 @@ std::optional<dds::Credit> IntakeCheck::on_batch(const dds::Batch& batch,
     newest_.verdict = Verdict::kGap;
     newest_.verdict_sequence = next_;
     newest_.text = "a batch was corrupted: send again from block " + number(next_);
-    return credit(around);
+    return credit(context);
   }
-  grant(around);  // places that came free count for this batch too
+  grant(context);  // places that came free count for this batch too
   if (batch.first_sequence > granted_end_ || batch.count > granted_end_ - batch.first_sequence) {
     return refuse(Verdict::kBeyondCredit,
                   "station sent blocks up to " + number(batch.first_sequence + batch.count) +
                       " and had credit up to " + number(granted_end_) + ": session refused",
-                  around);
+                  context);
   }
   if (batch.first_sequence > next_) {
     ++counters_.batches_gap;
@@ -181,39 +181,39 @@ std::optional<dds::Credit> IntakeCheck::on_batch(const dds::Batch& batch,
     newest_.verdict_sequence = next_;
     newest_.text = "blocks " + number(next_) + " to " + number(batch.first_sequence - 1) +
                    " are missing: send again";
-    return credit(around);
+    return credit(context);
   }
   const std::uint64_t batch_end = batch.first_sequence + batch.count;
   if (is_complete() || batch_end < next_ || (batch_end == next_ && !batch.is_end)) {
     ++counters_.batches_duplicate;
-    return is_complete() ? std::optional(credit(around)) : std::nullopt;
+    return is_complete() ? std::optional(credit(context)) : std::nullopt;
   }
   dds::Credit refusal;
-  if (!take_blocks(batch, around, accepted, refusal)) return refusal;
+  if (!take_blocks(batch, context, accepted, refusal)) return refusal;
   const bool was_gap = newest_.verdict == Verdict::kGap;
   newest_.verdict = Verdict::kGood;
   newest_.text.clear();
-  if (!batch.is_end) return was_gap ? std::optional(credit(around)) : std::nullopt;
+  if (!batch.is_end) return was_gap ? std::optional(credit(context)) : std::nullopt;
   if (next_ == 0) {
-    return end_session(Verdict::kRefusedProgram, "the program has no block", around);
+    return end_session(Verdict::kRefusedProgram, "the program has no block", context);
   }
   if (!has_end_block_) append_end(accepted);
   change(SessionEvent::kEndMark);
   newest_.verdict = Verdict::kComplete;
   newest_.verdict_sequence = next_ - 1;
   newest_.text = message_ = "program " + request_.program + " is in: " + number(next_) + " blocks";
-  return credit(around);
+  return credit(context);
 }
 
 /// Checks the new blocks of a batch that follows on; false with the refusal where one is bad.
-bool IntakeCheck::take_blocks(const dds::Batch& batch, const Surroundings& around,
+bool IntakeCheck::take_blocks(const dds::Batch& batch, const IntakeContext& context,
                               Accepted& accepted, dds::Credit& refusal) {
   for (std::uint64_t i = next_ - batch.first_sequence; i < batch.count; ++i) {
     ClBlock block = batch.blocks[i];
     BlockReject verdict{next_, block.line, RejectCode::kKind, -1, 0};
-    if (block.sequence == next_ && !has_end_block_) verdict = check_.check(block, around.actions);
+    if (block.sequence == next_ && !has_end_block_) verdict = check_.check(block, context.actions);
     if (verdict.code != RejectCode::kNone) {
-      refusal = refuse(verdict, around);
+      refusal = refuse(verdict, context);
       return false;
     }
     has_end_block_ = block.kind == BlockKind::kEnd;
@@ -235,29 +235,29 @@ void IntakeCheck::append_end(Accepted& accepted) {
 }
 
 std::optional<dds::Credit> IntakeCheck::on_planner_reject(const BlockReject& reject,
-                                                          const Surroundings& around) {
+                                                          const IntakeContext& context) {
   if (!is_held() || newest_.verdict == Verdict::kRefusedBlock) return std::nullopt;
-  return refuse(reject, around);
+  return refuse(reject, context);
 }
 
-dds::Credit IntakeCheck::on_queue_full(const Surroundings& around) {
+dds::Credit IntakeCheck::on_queue_full(const IntakeContext& context) {
   change(SessionEvent::kEndIsLost);
   return refuse(dds::Verdict::kBeyondCredit,
                 "the block queue is full although credit was kept, a fault of the service: session "
                 "refused",
-                around);
+                context);
 }
 
-std::optional<dds::Credit> IntakeCheck::on_program_end(const Surroundings& around) {
+std::optional<dds::Credit> IntakeCheck::on_program_end(const IntakeContext& context) {
   if (!is_held()) return std::nullopt;
-  return end_session(Verdict::kRan, "program " + request_.program + " ran to its end", around);
+  return end_session(Verdict::kRan, "program " + request_.program + " ran to its end", context);
 }
 
 std::optional<dds::Credit> IntakeCheck::on_queues_emptied(const std::string& reason,
-                                                          const Surroundings& around) {
+                                                          const IntakeContext& context) {
   if (!is_held()) return std::nullopt;
-  if (is_cut_off()) return end_session(newest_.verdict, newest_.text, around);
-  return end_session(Verdict::kAborted, reason, around);
+  if (is_cut_off()) return end_session(newest_.verdict, newest_.text, context);
+  return end_session(Verdict::kAborted, reason, context);
 }
 
 void IntakeCheck::on_station_lost(std::uint64_t session) {
@@ -268,13 +268,13 @@ void IntakeCheck::on_station_lost(std::uint64_t session) {
   if (next_ == 0) static_cast<void>(end_session(Verdict::kClosed, message_, {}));
 }
 
-std::optional<dds::Credit> IntakeCheck::due_credit(const Surroundings& around) {
+std::optional<dds::Credit> IntakeCheck::due_credit(const IntakeContext& context) {
   if (!is_held()) return std::nullopt;
   const std::int64_t published_ns = published_ns_;
   const std::uint64_t published_end = published_end_;
-  dds::Credit now = credit(around);
+  dds::Credit now = credit(context);
   if (granted_end_ >= published_end + kCreditStep ||
-      around.now_ns - published_ns >= kCreditRepeat_ns) {
+      context.now_ns - published_ns >= kCreditRepeat_ns) {
     return now;
   }
   published_ns_ = published_ns;
@@ -282,22 +282,22 @@ std::optional<dds::Credit> IntakeCheck::due_credit(const Surroundings& around) {
   return std::nullopt;
 }
 
-dds::Credit IntakeCheck::refuse(const BlockReject& reject, const Surroundings& around) {
+dds::Credit IntakeCheck::refuse(const BlockReject& reject, const IntakeContext& context) {
   newest_.verdict_sequence = reject.sequence;
   newest_.verdict_line = reject.line;
   newest_.verdict_joint = reject.joint;
   newest_.verdict_value = reject.value;
-  return refuse(Verdict::kRefusedBlock, describe(reject, model_), around);
+  return refuse(Verdict::kRefusedBlock, describe(reject, model_), context);
 }
 
 dds::Credit IntakeCheck::refuse(dds::Verdict verdict, std::string text,
-                                const Surroundings& around) {
+                                const IntakeContext& context) {
   ++counters_.sessions_refused;
-  if (next_ == 0) return end_session(verdict, std::move(text), around);
+  if (next_ == 0) return end_session(verdict, std::move(text), context);
   change(SessionEvent::kRefused);
   newest_.verdict = verdict;
   newest_.text = message_ = std::move(text);
-  return credit(around);
+  return credit(context);
 }
 
 /// The answer to somebody who does not hold the machine.
@@ -311,11 +311,11 @@ dds::Credit IntakeCheck::stranger(std::uint64_t session, dds::Verdict verdict, s
 }
 
 dds::Credit IntakeCheck::end_session(dds::Verdict verdict, std::string text,
-                                     const Surroundings& around) {
+                                     const IntakeContext& context) {
   newest_.verdict = verdict;
   newest_.text = message_ = std::move(text);
   change(SessionEvent::kRefused);
-  dds::Credit last = credit(around);
+  dds::Credit last = credit(context);
   ended_[ended_at_++ % ended_.size()] = last;
   session_ = 0;
   change(SessionEvent::kOver);
@@ -330,18 +330,18 @@ const dds::Credit* IntakeCheck::find_ended(std::uint64_t session) const noexcept
 }
 
 /// Free slots become credit. One is kept for the end that append_end() may add.
-void IntakeCheck::grant(const Surroundings& around) noexcept {
-  if (!is_accepting(phase_) || around.free_slots <= 1) return;
-  granted_end_ = std::max(granted_end_, next_ + around.free_slots - 1);
+void IntakeCheck::grant(const IntakeContext& context) noexcept {
+  if (!is_accepting(phase_) || context.free_slots <= 1) return;
+  granted_end_ = std::max(granted_end_, next_ + context.free_slots - 1);
 }
 
-dds::Credit IntakeCheck::credit(const Surroundings& around) {
-  grant(around);
+dds::Credit IntakeCheck::credit(const IntakeContext& context) {
+  grant(context);
   newest_.session = session_;
   newest_.service_id = service_id_;
   newest_.next_sequence = next_;
   newest_.credits = is_accepting(phase_) ? static_cast<std::uint32_t>(granted_end_ - next_) : 0;
-  published_ns_ = around.now_ns;
+  published_ns_ = context.now_ns;
   published_end_ = granted_end_;
   return newest_;
 }

@@ -20,7 +20,7 @@ namespace meridian::stream {
     const dds::SessionRequest& request) noexcept;
 
 /// What the intake thread knows at the moment of a call.
-struct Surroundings {
+struct IntakeContext {
   std::int64_t now_ns = 0;     ///< monotonic
   std::size_t free_slots = 0;  ///< of the block queue
   ActionPeer actions;
@@ -62,7 +62,7 @@ class IntakeCheck {
   /// A station asks for the machine or gives it back. Returns the answer, to be published at once.
   /// `tool_length_mm` is that of the tool in the spindle when the program will start.
   [[nodiscard]] dds::Credit on_request(const dds::SessionRequest& request,
-                                       const Surroundings& around, double tool_length_mm);
+                                       const IntakeContext& context, double tool_length_mm);
 
   /// The answer to an open that is refused for a reason that lies outside of the protocol.
   [[nodiscard]] dds::Credit refuse_program(const dds::SessionRequest& request, std::string why);
@@ -70,26 +70,27 @@ class IntakeCheck {
   /// A batch came. `accepted` gets the blocks that go into the queue. Returns an answer where the
   /// station must hear something at once: send again, refused, complete, not your session.
   [[nodiscard]] std::optional<dds::Credit> on_batch(const dds::Batch& batch,
-                                                    const Surroundings& around, Accepted& accepted);
+                                                    const IntakeContext& context,
+                                                    Accepted& accepted);
 
   /// The planner refused a block of the session that was accepted before.
   [[nodiscard]] std::optional<dds::Credit> on_planner_reject(const BlockReject& reject,
-                                                             const Surroundings& around);
+                                                             const IntakeContext& context);
   /// Blocks that were accepted found no room in the queue, against what credits promise: nothing
   /// behind them may run.
-  [[nodiscard]] dds::Credit on_queue_full(const Surroundings& around);
+  [[nodiscard]] dds::Credit on_queue_full(const IntakeContext& context);
   /// The machine executed the program to its end: the machine is free.
-  [[nodiscard]] std::optional<dds::Credit> on_program_end(const Surroundings& around);
+  [[nodiscard]] std::optional<dds::Credit> on_program_end(const IntakeContext& context);
   /// Queues were emptied at rest (abort, disable, fault) for `reason`: the machine is free.
   [[nodiscard]] std::optional<dds::Credit> on_queues_emptied(const std::string& reason,
-                                                             const Surroundings& around);
+                                                             const IntakeContext& context);
   /// The station's process is gone, or its connection. What it sent stays; if it sent nothing the
   /// machine is free.
   void on_station_lost(std::uint64_t session);
 
   /// Returns the credit to be published now: at once when `kCreditStep` blocks more may be sent,
   /// else repeated every `kCreditRepeat_ns` while a session holds the machine.
-  [[nodiscard]] std::optional<dds::Credit> due_credit(const Surroundings& around);
+  [[nodiscard]] std::optional<dds::Credit> due_credit(const IntakeContext& context);
 
   [[nodiscard]] bool is_held() const noexcept { return phase_ != SessionPhase::kFree; }
   [[nodiscard]] bool is_complete() const noexcept { return has_end_mark(phase_); }
@@ -107,20 +108,20 @@ class IntakeCheck {
   static constexpr std::int64_t kCreditRepeat_ns = 100'000'000;
 
  private:
-  [[nodiscard]] dds::Credit open(const dds::SessionRequest& request, const Surroundings& around,
+  [[nodiscard]] dds::Credit open(const dds::SessionRequest& request, const IntakeContext& context,
                                  double tool_length_mm);
-  [[nodiscard]] dds::Credit close(const dds::SessionRequest& request, const Surroundings& around);
+  [[nodiscard]] dds::Credit close(const dds::SessionRequest& request, const IntakeContext& context);
   [[nodiscard]] dds::Credit stranger(std::uint64_t session, dds::Verdict verdict, std::string text);
-  [[nodiscard]] dds::Credit refuse(const BlockReject& reject, const Surroundings& around);
+  [[nodiscard]] dds::Credit refuse(const BlockReject& reject, const IntakeContext& context);
   [[nodiscard]] dds::Credit refuse(dds::Verdict verdict, std::string text,
-                                   const Surroundings& around);
+                                   const IntakeContext& context);
   [[nodiscard]] dds::Credit end_session(dds::Verdict verdict, std::string text,
-                                        const Surroundings& around);
+                                        const IntakeContext& context);
   [[nodiscard]] const dds::Credit* find_ended(std::uint64_t session) const noexcept;
   void change(SessionEvent event) noexcept { phase_ = phase_after(phase_, event); }
-  void grant(const Surroundings& around) noexcept;
-  [[nodiscard]] dds::Credit credit(const Surroundings& around);
-  [[nodiscard]] bool take_blocks(const dds::Batch& batch, const Surroundings& around,
+  void grant(const IntakeContext& context) noexcept;
+  [[nodiscard]] dds::Credit credit(const IntakeContext& context);
+  [[nodiscard]] bool take_blocks(const dds::Batch& batch, const IntakeContext& context,
                                  Accepted& accepted, dds::Credit& refusal);
   void append_end(Accepted& accepted);
 

@@ -20,7 +20,7 @@ using Wire = meridian_wire_Setpoint;
 /// Serialized, a setpoint is the bytes of its struct: natural alignment, no padding between fields.
 constexpr std::size_t kPayload_bytes = 124;
 constexpr std::size_t kHeader_bytes = 4;
-constexpr const char* kMoulds = "meridian/setpoint_mould";
+constexpr const char* kPreparedTopic = "meridian/setpoint_prepared";
 static_assert(std::is_trivially_copyable_v<Wire>);
 static_assert(offsetof(Wire, crc32c) + sizeof(Wire::crc32c) == kPayload_bytes);
 
@@ -34,23 +34,24 @@ std::uint32_t references(const ddsi_serdata& sample) noexcept {
 SetpointWriter::SetpointWriter(Participant& participant) : writer_(participant) {
   warm_pools(participant);
   writer_.register_instance({});
-  make_moulds(participant);
+  prepare_samples(participant);
 }
 
 SetpointWriter::~SetpointWriter() {
-  for (const Mould& mould : moulds_) {
-    if (mould.sample != nullptr) ddsi_serdata_unref(mould.sample);
+  for (const PreparedSample& prepared : prepared_samples_) {
+    if (prepared.sample != nullptr) ddsi_serdata_unref(prepared.sample);
   }
 }
 
 /// A writer and a reader of this process on a topic of the same type: what the reader takes is the
 /// very sample that Cyclone serialized, with a reference that is ours.
-void SetpointWriter::make_moulds(Participant& participant) {
-  const Entity topic(kMoulds, dds_create_topic(participant.handle(), &meridian_wire_Setpoint_desc,
-                                               kMoulds, nullptr, nullptr));
-  const Entity reader(
-      kMoulds, dds_create_reader(participant.subscriber(), topic.handle(), nullptr, nullptr));
-  const Entity writer(kMoulds,
+void SetpointWriter::prepare_samples(Participant& participant) {
+  const Entity topic(kPreparedTopic,
+                     dds_create_topic(participant.handle(), &meridian_wire_Setpoint_desc,
+                                      kPreparedTopic, nullptr, nullptr));
+  const Entity reader(kPreparedTopic, dds_create_reader(participant.subscriber(), topic.handle(),
+                                                        nullptr, nullptr));
+  const Entity writer(kPreparedTopic,
                       dds_create_writer(participant.publisher(), topic.handle(), nullptr, nullptr));
   SetpointSample pattern;
   pattern.setpoint.cycle = 0x0123456789abcdefULL;
@@ -58,35 +59,35 @@ void SetpointWriter::make_moulds(Participant& participant) {
   pattern.crc = 77;
   Wire wire{};
   to_wire(pattern, wire);
-  for (Mould& mould : moulds_) {
+  for (PreparedSample& prepared : prepared_samples_) {
     dds_sample_info_t info;
     if (dds_write(writer.handle(), &wire) != DDS_RETCODE_OK ||
-        dds_takecdr(reader.handle(), &mould.sample, 1, &info, DDS_ANY_STATE) != 1) {
+        dds_takecdr(reader.handle(), &prepared.sample, 1, &info, DDS_ANY_STATE) != 1) {
       throw DdsError("setpoints: Cyclone DDS did not hand back a sample of its own process");
     }
     ddsrt_iovec_t bytes;
     ddsi_serdata* const held =
-        ddsi_serdata_to_ser_ref(mould.sample, 0, kHeader_bytes + kPayload_bytes, &bytes);
-    mould.payload = static_cast<std::byte*>(bytes.iov_base) + kHeader_bytes;
+        ddsi_serdata_to_ser_ref(prepared.sample, 0, kHeader_bytes + kPayload_bytes, &bytes);
+    prepared.payload = static_cast<std::byte*>(bytes.iov_base) + kHeader_bytes;
     ddsi_serdata_to_ser_unref(held, &bytes);
-    if (std::memcmp(mould.payload, &wire, kPayload_bytes) != 0) {
+    if (std::memcmp(prepared.payload, &wire, kPayload_bytes) != 0) {
       throw DdsError("setpoints: Cyclone DDS serializes them otherwise than this program expects");
     }
   }
 }
 
 bool SetpointWriter::write(const SetpointSample& sample) noexcept {
-  for (std::size_t i = 0; i < moulds_.size(); ++i) {
-    const Mould& mould = moulds_[next_];
-    next_ = (next_ + 1) % moulds_.size();
-    if (references(*mould.sample) != 1) continue;  // still being sent, or kept for its deadline
+  for (std::size_t i = 0; i < prepared_samples_.size(); ++i) {
+    const PreparedSample& prepared = prepared_samples_[next_];
+    next_ = (next_ + 1) % prepared_samples_.size();
+    if (references(*prepared.sample) != 1) continue;  // still being sent, or kept for its deadline
     Wire wire{};
     to_wire(sample, wire);
-    std::memcpy(mould.payload, &wire, kPayload_bytes);
-    // Writing gives up one reference; the mould keeps its own.
-    return dds_writecdr(writer_.handle(), ddsi_serdata_ref(mould.sample)) == DDS_RETCODE_OK;
+    std::memcpy(prepared.payload, &wire, kPayload_bytes);
+    // Writing gives up one reference; the prepared sample keeps its own.
+    return dds_writecdr(writer_.handle(), ddsi_serdata_ref(prepared.sample)) == DDS_RETCODE_OK;
   }
-  ++without_mould_;
+  ++unprepared_;
   return writer_.write(sample);
 }
 

@@ -36,20 +36,20 @@ class SetpointWriter {
   [[nodiscard]] int matched_readers() const noexcept { return writer_.matched_readers(); }
   /// How often the lease ran out between two writes.
   [[nodiscard]] std::uint64_t lease_losses() const noexcept;
-  /// Samples that were written the ordinary way because Cyclone still held all moulds.
-  [[nodiscard]] std::uint64_t written_without_mould() const noexcept { return without_mould_; }
+  /// Samples that were written the ordinary way because Cyclone still held all prepared ones.
+  [[nodiscard]] std::uint64_t written_unprepared() const noexcept { return unprepared_; }
 
  private:
-  struct Mould {
+  struct PreparedSample {
     ddsi_serdata* sample = nullptr;
     std::byte* payload = nullptr;  ///< its serialized fields
   };
-  void make_moulds(Participant& participant);
+  void prepare_samples(Participant& participant);
 
   Writer<SetpointSample> writer_;
-  std::array<Mould, 4> moulds_{};
+  std::array<PreparedSample, 4> prepared_samples_{};
   std::size_t next_ = 0;
-  std::uint64_t without_mould_ = 0;
+  std::uint64_t unprepared_ = 0;
 };
 
 }  // namespace meridian::dds

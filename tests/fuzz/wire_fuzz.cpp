@@ -127,7 +127,7 @@ class Listeners {
   }
 
  private:
-  [[nodiscard]] stream::Surroundings around() const {
+  [[nodiscard]] stream::IntakeContext around() const {
     return {.now_ns = now_ns_, .free_slots = 100, .actions = {.is_there = true}};
   }
 

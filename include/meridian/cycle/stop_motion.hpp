@@ -11,7 +11,7 @@
 #include "meridian/cycle/single_block.hpp"
 #include "meridian/cycle/stop_margin.hpp"
 
-/// Stops: hold, abort and FaultStop, on the path and, where it cannot be evaluated, beside it.
+/// Stops: feed hold, abort and FaultStop, on the path and, where it cannot be evaluated, beside it.
 /// RT: cycle.
 namespace meridian {
 

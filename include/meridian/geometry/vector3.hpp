@@ -17,7 +17,8 @@ using Array3 = std::array<double, 3>;
 [[nodiscard]] inline Vector3 to_vector(const Array3& a) noexcept { return {a[0], a[1], a[2]}; }
 [[nodiscard]] inline Array3 to_array(const Vector3& v) noexcept { return {v[0], v[1], v[2]}; }
 
-/// A tool pose: tip position (mm) and unit tool axis, from the tip towards the spindle.
+/// A tool pose: tip position (the tool centre point, TCP, mm) and unit tool axis, from the tip
+/// towards the spindle.
 template <class S>
 struct Pose {
   Vec3<S> tip;

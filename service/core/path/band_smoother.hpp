@@ -28,10 +28,11 @@ struct SmoothedWindow {
   double largest = 0;  ///< bound of the deviation, in tolerances
 };
 
-/// Smooths a window of control points inside the band: least squares of third differences under a
-/// ball about every sample of the polyline, by ADMM on one banded Cholesky factor; then verifies
-/// every span and pulls back those that do not keep the tolerances towards the points as they were,
-/// which were verified before. Source: docs/motion.md, 1.3 and 1.4. Allocates at construction.
+/// Corner rounding inside the blend tolerance: smooths a window of control points, least squares of
+/// third differences under a ball about every sample of the polyline, by ADMM on one banded
+/// Cholesky factor; then verifies every span and pulls back those that do not keep the tolerances
+/// towards the points as they were, which were verified before. Source: docs/motion.md, 1.3
+/// and 1.4. Allocates at construction.
 class BandSmoother {
  public:
   explicit BandSmoother(const BandTuning& tuning);

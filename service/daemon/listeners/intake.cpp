@@ -56,13 +56,13 @@ void Intake::run() noexcept {
     show_cut_off();
     look_for_station();
     free_idle_machine();
-    publish(check_.due_credit(around()));
+    publish(check_.due_credit(context()));
     show();
     waitset_.wait(kIdle);
   }
 }
 
-stream::Surroundings Intake::around() noexcept {
+stream::IntakeContext Intake::context() noexcept {
   const auto limit = static_cast<std::size_t>(service_.block_queue);
   const std::size_t used = ports_.blocks.size() + kReserve;
   const std::size_t slots = std::min(ports_.blocks.capacity(), limit);
@@ -77,14 +77,14 @@ void Intake::take_events() {
   Event event;
   while (ports_.session_events.try_pop(event)) {
     if (event.code == EventCode::kProgramEnd) {
-      publish(check_.on_program_end(around()));
+      publish(check_.on_program_end(context()));
     } else if (event.b == 1) {
       mark_.epoch = static_cast<std::uint16_t>(event.a);
       show_mark();
     } else {
       empty_queue(static_cast<std::uint16_t>(event.a));
       publish(check_.on_queues_emptied("the operator, the probe or a fault ended the program",
-                                       around()));
+                                       context()));
     }
   }
 }
@@ -103,7 +103,7 @@ void Intake::take_rejects() {
   SessionReject refused;
   while (ports_.rejects.try_pop(refused)) {
     if (refused.session != check_.session()) continue;
-    publish(check_.on_planner_reject(refused.reject, around()));
+    publish(check_.on_planner_reject(refused.reject, context()));
   }
 }
 
@@ -123,7 +123,7 @@ void Intake::free_idle_machine() {
   if (idle_since_ns_ == 0) idle_since_ns_ = now_ns;
   if (now_ns - idle_since_ns_ < kIdle_ns) return;
   empty_queue(mark_.epoch);
-  publish(check_.on_queues_emptied("nothing of the program is left to run", around()));
+  publish(check_.on_queues_emptied("nothing of the program is left to run", context()));
 }
 
 void Intake::take_requests() {
@@ -137,8 +137,8 @@ void Intake::take_requests() {
 void Intake::take_request(const dds::SessionRequest& request, std::uint64_t source) {
   if (!may_open(request) || !may_go_on(request)) return;
   const std::uint64_t before = check_.session();
-  publish(
-      check_.on_request(request, around(), ports_.spindle_tool_mm.load(std::memory_order_relaxed)));
+  publish(check_.on_request(request, context(),
+                            ports_.spindle_tool_mm.load(std::memory_order_relaxed)));
   if (check_.session() != request.session || !check_.is_held()) return;
   if (station_source_ != source) {
     station_identity_ = dds::describe_source(participant_, requests_.handle(), source);
@@ -216,8 +216,8 @@ void Intake::take_batches() {
   stream::Accepted accepted;
   for (int left = kMaxSamples; left > 0 && batches_.take(batch); --left) {
     const std::int64_t begun_ns = spans_.is_on() ? monotonic_ns() : 0;
-    std::optional<dds::Credit> answer = check_.on_batch(batch, around(), accepted);
-    if (!push(accepted)) answer = check_.on_queue_full(around());
+    std::optional<dds::Credit> answer = check_.on_batch(batch, context(), accepted);
+    if (!push(accepted)) answer = check_.on_queue_full(context());
     publish(answer);
     if (spans_.is_on()) spans_.write(trace::Doing::kTakeBlocks, begun_ns, monotonic_ns(), pushed_);
   }

@@ -89,7 +89,7 @@ class Intake {
   void show_mark() noexcept;
   void publish(const std::optional<dds::Credit>& credit);
   void show();
-  [[nodiscard]] stream::Surroundings around() noexcept;
+  [[nodiscard]] stream::IntakeContext context() noexcept;
 
   /// Free slots that the check does not know of, for what is on its way while it computes credits.
   static constexpr std::size_t kReserve = 64;

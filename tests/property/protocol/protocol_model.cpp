@@ -11,7 +11,7 @@ void Protocol::deliver(const ToService& message, bool is_spoilt) {
     dds::SessionRequest request;
     request.session = message.session;
     request.station = "s";
-    answer(intake_->on_request(request, around(), model_->tool_length_mm));
+    answer(intake_->on_request(request, context(), model_->tool_length_mm));
     return;
   }
   dds::Batch batch =
@@ -23,7 +23,7 @@ void Protocol::deliver(const ToService& message, bool is_spoilt) {
   const bool is_twice = batch.session == intake_->session() && message.count > 0 &&
                         message.first < intake_->next_sequence();
   Accepted accepted;
-  const auto credit = intake_->on_batch(batch, around(), accepted);
+  const auto credit = intake_->on_batch(batch, context(), accepted);
   push(accepted, message.session);
   if (variant_ == Variant::kRunsDuplicates && is_twice && accepted.count == 0) {
     accepted.blocks[0] = batch.blocks[0];
@@ -61,7 +61,7 @@ void Protocol::run_block() {
   ++ran_;
   ran_of_[queue_session_] = ran_;
   if (queue_.empty() && has_end_) {
-    answer(intake_->on_program_end(around()));
+    answer(intake_->on_program_end(context()));
   }
 }
 
@@ -109,7 +109,7 @@ Protocol::Steps Protocol::steps() const {
     add(what + " is gone", take);
   }
   add("time goes on", [](Protocol& p) { p.now_ += kTick; });
-  add("credit is repeated", [](Protocol& p) { p.answer(p.intake_->due_credit(p.around())); });
+  add("credit is repeated", [](Protocol& p) { p.answer(p.intake_->due_credit(p.context())); });
   if (!queue_.empty()) add("a block runs", [](Protocol& p) { p.run_block(); });
   if (bounds_.station_restarts > 0) {
     add("station is killed, another one comes", [](Protocol& p) {
@@ -134,7 +134,7 @@ Protocol::Steps Protocol::steps() const {
     add("operator aborts", [](Protocol& p) {
       --p.bounds_.aborts;
       p.clear_queue();
-      p.answer(p.intake_->on_queues_emptied("abort", p.around()));
+      p.answer(p.intake_->on_queues_emptied("abort", p.context()));
     });
   }
   return all;
@@ -156,8 +156,8 @@ bool Protocol::comes_to_an_end() const {
     while (!p.queue_.empty()) p.run_block();
     // A machine that waits for a station that never comes back is freed by its operator.
     const bool is_stuck = p.intake_->is_held() && p.intake_->session() != p.session_;
-    if (is_stuck && round > 10) p.answer(p.intake_->on_queues_emptied("abort", p.around()));
-    p.answer(p.intake_->due_credit(p.around()));
+    if (is_stuck && round > 10) p.answer(p.intake_->on_queues_emptied("abort", p.context()));
+    p.answer(p.intake_->due_credit(p.context()));
     while (p.work_station()) {
     }
     p.now_ += kTick;
@@ -222,14 +222,14 @@ std::string Protocol::key() const {
   }
   key += '|';
   IntakeCheck copy = *intake_;
-  add(copy.due_credit(around()).has_value());
-  Surroundings later = around();
+  add(copy.due_credit(context()).has_value());
+  IntakeContext later = context();
   later.now_ns += kTick;
   if (const auto credit = IntakeCheck(*intake_).due_credit(later)) add_credit(*credit);
   for (std::uint64_t session = 1; session <= session_; ++session) {
     if (session == intake_->session()) continue;
     Accepted accepted;
-    const auto last = copy.on_batch(test::good_batch(session, 0, 1), around(), accepted);
+    const auto last = copy.on_batch(test::good_batch(session, 0, 1), context(), accepted);
     if (last) add_credit(*last);
   }
   return key + wrong_;

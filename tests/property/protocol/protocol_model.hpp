@@ -92,7 +92,7 @@ class Protocol {
     queue_session_ = pushed_ = ran_ = 0;
     has_end_ = false;
   }
-  [[nodiscard]] Surroundings around() const {
+  [[nodiscard]] IntakeContext context() const {
     const std::size_t slots =
         variant_ == Variant::kCountsSlotsTwice ? 2 * bounds_.slots : bounds_.slots;
     const std::size_t used = std::min(queue_.size(), slots);

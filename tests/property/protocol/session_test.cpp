@@ -99,7 +99,7 @@ std::uint64_t stream_through(std::uint64_t seed, std::uint64_t count, std::size_
   Queue queue{.slots = slots};
 
   std::int64_t now_ns = 0;
-  const auto around = [&] { return Surroundings{now_ns, queue.slots - queue.queued, {}}; };
+  const auto context = [&] { return IntakeContext{now_ns, queue.slots - queue.queued, {}}; };
   for (; station.state() != StationState::kComplete; now_ns += kMillisecond) {
     const bool is_stuck = now_ns >= 600'000 * kMillisecond || station.is_over();
     if (is_stuck) ADD_FAILURE() << "stuck at " << queue.taken << ": " << station.message();
@@ -111,15 +111,15 @@ std::uint64_t stream_through(std::uint64_t seed, std::uint64_t count, std::size_
       batches.send(batch, now_ns);
     }
     for (const auto& request : requests.arrived(now_ns)) {
-      credits.send(intake.on_request(request, around(), 100), now_ns);
+      credits.send(intake.on_request(request, context(), 100), now_ns);
     }
     for (const auto& came : batches.arrived(now_ns)) {
       Accepted accepted;
-      const auto answer = intake.on_batch(came, around(), accepted);
+      const auto answer = intake.on_batch(came, context(), accepted);
       if (answer) credits.send(*answer, now_ns);
       queue.push(accepted);
     }
-    if (const auto credit = intake.due_credit(around())) credits.send(*credit, now_ns);
+    if (const auto credit = intake.due_credit(context())) credits.send(*credit, now_ns);
     for (const auto& credit : credits.arrived(now_ns)) station.on_credit(credit, now_ns);
     queue.queued -=
         std::min<std::size_t>(queue.queued, std::uniform_int_distribution(0, 60)(engine));

@@ -50,7 +50,7 @@ class Intake : public testing::Test {
 
   MachineModel model_ = test::lai_machine();
   IntakeCheck check_{model_, {{1, 80.0}}, 99};
-  Surroundings around_{.now_ns = 0, .free_slots = 100, .actions = {.is_there = true}};
+  IntakeContext around_{.now_ns = 0, .free_slots = 100, .actions = {.is_there = true}};
   Accepted accepted_;
   std::uint64_t session_ = kSession;
 };

@@ -60,7 +60,7 @@ TEST(SetpointWriter, EverySampleArrivesWholeThoughItsBytesAreUsedAgain) {
       ASSERT_TRUE(is_whole(got)) << cycle;
     }
   }
-  EXPECT_EQ(writer.written_without_mould(), 0U);
+  EXPECT_EQ(writer.written_unprepared(), 0U);
 }
 
 /// Other topics of the same process, busy in ways that empty the common pool: large samples out,
@@ -120,7 +120,7 @@ TEST(SetpointWriter, MakesNoHeapCallWhateverOtherThreadsDoWithDds) {
   EXPECT_LE(calls.allocations, writer.lease_losses()) << "no lease was lost, so none may be made\n"
                                                       << watch::HeapWatch::callers(calls);
   EXPECT_EQ(calls.frees, 0U) << watch::HeapWatch::callers(calls);
-  EXPECT_EQ(writer.written_without_mould(), 0U);
+  EXPECT_EQ(writer.written_unprepared(), 0U);
 }
 
 TEST(SetpointWriter, MakesNoHeapCallThoughOtherWritersKeepWhatItGaveBackToThePool) {

@@ -46,8 +46,9 @@ struct FeedCount {
   std::int64_t max_rounds = 0;  ///< of one window
 };
 
-/// The feed over a stream of spans, window by window, inside velocity, acceleration and jerk of
-/// every joint and the programmed feed; every plan ends at rest inside the spans that are there.
+/// The feed over a stream of spans, window by window, inside velocity, acceleration and jerk limit
+/// of every joint and the programmed feed; every plan ends at rest inside the spans that are there.
+/// It is time-optimal path parameterisation (TOPP) with jerk limits over a look-ahead.
 ///
 /// A window is planned when the cells it covers are there and not earlier, so what is planned
 /// follows from the spans alone, not from when they came. A window without a plan of its own keeps
