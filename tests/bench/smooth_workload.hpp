@@ -54,7 +54,7 @@ struct SmoothTotal {
 /// Joints of a block on the first branch that reaches it, and that branch.
 [[nodiscard]] inline RunStart start_at(const MachineModel& model, const ClBlock& block) {
   RunStart start;
-  start.pose = {to_vector(block.tip_mm), to_vector(block.axis).normalized()};
+  start.pose = start.programmed = {to_vector(block.tip_mm), to_vector(block.axis).normalized()};
   start.tool_length_mm = model.tool_length_mm;
   for (int branch = branch_count(model); branch-- > 0;) {
     const auto at = solve(model, model.tool_length_mm, start.pose, branch, JointVector{});

@@ -192,6 +192,8 @@ TEST_F(SingularSeed, AlongTheBaseAxisTheYawTurnsWhereTheRollRunsOutOfTravel) {
            Along{1016, 1e-3, Transition::kSmooth},
            Along{1016, 1e-6, Transition::kExactStop},
            Along{1016, 1e-9, Transition::kExactStop},
+           Along{1022, 9e-3, Transition::kExactStop},
+           Along{1022, 5e-3, Transition::kExactStop},
            Along{1022, 1e-6, Transition::kExactStop},
            Along{1022, 1e-9, Transition::kExactStop},
            Along{1045, 1e-9, Transition::kExactStop},
@@ -201,14 +203,32 @@ TEST_F(SingularSeed, AlongTheBaseAxisTheYawTurnsWhereTheRollRunsOutOfTravel) {
   }
 }
 
+/// A dwell after every cut.
+std::vector<ClBlock> with_dwells(const std::vector<ClBlock>& blocks) {
+  std::vector<ClBlock> out;
+  for (const ClBlock& block : blocks) {
+    if (block.kind != BlockKind::kCut) continue;
+    out.push_back(block);
+    out.push_back({.line = block.line, .kind = BlockKind::kDwell});
+  }
+  number_and_end(out);
+  return out;
+}
+
 /// Through the base axis a block ends inside the tolerance by a tenth, at rest. A yaw that rested
 /// there anyhow once led the next block out of the tolerance: rests added up.
 TEST_F(SingularSeed, RestsBesideTheBaseAxisDoNotAddUp) {
   for (const std::uint32_t seed : {11, 12}) {
     SCOPED_TRACE(seed);
-    (void)planned(robot_, ShoulderPass(robot_, seed).program(Pass::kThrough, 9e-3),
-                  Transition::kExactStop);
+    const auto blocks = ShoulderPass(robot_, seed).program(Pass::kThrough, 9e-3);
+    (void)planned(robot_, blocks, Transition::kExactStop);
+    (void)planned(robot_, with_dwells(blocks), Transition::kExactStop);
   }
+}
+
+/// Onto both, 0.9 of the tolerance beside: the yaw had to turn by 90 degrees in the last 0.01 mm.
+TEST_F(SingularSeed, OntoBothTheJointsRestInsideTheTolerance) {
+  expect_planned(BothPass(robot_, 8).program(Pass::kOnto, 0.9), Transition::kExactStop);
 }
 
 INSTANTIATE_TEST_SUITE_P(

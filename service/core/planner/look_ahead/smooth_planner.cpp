@@ -33,7 +33,7 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   w.window.begin(w.slack());
   w.looked_at = 0;
   w.intake = has_branches(w.model) ? Workspace::Intake::kLooking : Workspace::Intake::kOpen;
-  w.pose = w.plain.junction().pose;
+  w.pose = w.programmed = w.plain.junction().pose;
   w.joints = at_rest;
 }
 
@@ -127,8 +127,7 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
       w.refuse(result);
     } else if (result.status == PlanStatus::kOk) {
       w.note(result.rewind);
-      w.pose = w.plain.junction().pose;
-      w.joints = w.plain.joints();
+      w.follow_plain(block.kind);
       if (result.axis_deviation_rad > 0) {
         w.plain_relaxed_axes.push_over_oldest({block.sequence, block.sequence, block.line,
                                                block.line, result.axis_deviation_rad,
@@ -140,7 +139,7 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
   if (!w.is_running()) w.begin_run(*cut);
   w.run.take(*cut);
   if (!w.is_smooth()) w.run.finish();
-  w.pose = {to_vector(cut->tip_mm), to_vector(cut->axis)};
+  w.pose = w.programmed = {to_vector(cut->tip_mm), to_vector(cut->axis)};
   (void)w.publish(writer);
   return w.refusal.value_or(PlanResult{});
 }

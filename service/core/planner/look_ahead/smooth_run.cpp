@@ -42,8 +42,8 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
   band_.begin(start.pose, tolerance);
   corridor_.begin({start.joints, start.branch, start.tool_length_mm, start.pose.axis,
                    pole_tolerance_rad, start.is_on_pole});
-  passes_.begin({start.joints, start.branch, start.tool_length_mm, start.pose, pole_tolerance_rad,
-                 tolerance.tip_mm});
+  passes_.begin({start.joints, start.branch, start.tool_length_mm, start.programmed,
+                 pole_tolerance_rad, tolerance.tip_mm});
   begin_feed(start.branch);
   ends_.clear();
   const int free = redundant_joint(model_);

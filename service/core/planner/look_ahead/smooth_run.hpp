@@ -23,7 +23,8 @@ namespace meridian {
 
 /// Where a run starts, and the names that its pieces get.
 struct RunStart {
-  ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};
+  ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};        ///< of the tool, at rest
+  ToolPose programmed{Vector3::Zero(), Vector3::UnitZ()};  ///< that pose as programmed
   JointVector joints{};
   int branch = 0;
   /// The axis stays on the pole all the way: the redundant joint is held, nothing is sought about

@@ -110,6 +110,7 @@ void SmoothPlanner::Workspace::begin_run(const ClBlock& cut) noexcept {
   const RestToRestPlanner::Junction at = plain.junction();
   RunStart start;
   start.pose = at.pose;
+  start.programmed = programmed;
   start.joints = at.joints;
   start.tool_length_mm = at.tool_length_mm;
   start.epoch = at.epoch;

@@ -118,6 +118,13 @@ struct SmoothPlanner::Workspace {
     if (!is_looking()) return awaits_ahead();
     return window.waiting() != (replayed_look > 0 ? replayed_look : kLookAhead);
   }
+  /// A block of `kind` was planned from rest to rest. What neither moves nor changes the tool
+  /// leaves the programmed pose as it is.
+  void follow_plain(BlockKind kind) noexcept {
+    pose = plain.junction().pose;
+    joints = plain.joints();
+    if (is_motion(kind) || kind == BlockKind::kTool) programmed = pose;
+  }
   void refuse(const PlanResult& why) noexcept { refusal = why; }
   void decide(bool is_at_rest) noexcept {
     if (!is_at_rest) decided = Decided::kNothing;
@@ -133,6 +140,9 @@ struct SmoothPlanner::Workspace {
   SmoothRun run;
   SmoothSettings settings;
   ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};  ///< end of the last block taken
+  /// That end as programmed: a run that ends beside a singularity leaves the tool inside the
+  /// tolerance of it.
+  ToolPose programmed{Vector3::Zero(), Vector3::UnitZ()};
   JointVector joints{};
   Intake intake = Intake::kOpen;
   Running running = Running::kNone;

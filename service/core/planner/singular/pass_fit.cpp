@@ -56,7 +56,8 @@ bool PassFit::fit(RobotPass& pass, double rest_turn) noexcept {
     return false;
   }
   pass.rests_at_end = range_.rests_at_to & only(first_of(pass.at));
-  if (pass.at == SingularSet::kWristAndShoulder && !is_over_base(pass.end)) {
+  if (pass.at == SingularSet::kWristAndShoulder && !ends_with_range(pass) &&
+      !is_over_base(pass.end)) {
     pass.rests_at_end = SingularSet::kNone;
   }
   if (!fit_first(pass, rest_turn, reference)) return false;
@@ -124,8 +125,9 @@ bool PassFit::fit_roll(RobotPass& pass, const JointVector& reference) const noex
   const auto out = beside_yaw(pass, 1, pass.branch_after, reference);
   if (out.status != SolveStatus::kOk) return false;
   const double angle = std::abs(std::sin(value_of(out.q[robot::kBend])));
-  if ((pass.end >= range_.to || pass.rests_at_end != SingularSet::kNone) &&
-      angle < kOnPoleTolerances * task_.axis_tolerance_rad) {
+  const double rest_share = ends_with_range(pass) ? range_.rest_share : kOnPoleTolerances;
+  if ((ends_with_range(pass) || pass.rests_at_end != SingularSet::kNone) &&
+      angle < rest_share * task_.axis_tolerance_rad) {
     pass.rests_at_end = pass.rests_at_end | SingularSet::kWrist;
     keep_side(pass, Singularity::kWrist);
   } else {

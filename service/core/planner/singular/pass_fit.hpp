@@ -31,6 +31,9 @@ class PassFit {
   [[nodiscard]] bool is_beside_both(double u) const noexcept;
   /// So near that the yaw may rest.
   [[nodiscard]] bool is_over_base(double u) const noexcept;
+  [[nodiscard]] bool ends_with_range(const RobotPass& pass) const noexcept {
+    return !(pass.end < range_.to);
+  }
   /// The exact way at an end of a pass.
   [[nodiscard]] Solution<Jet<2>> exactly(double u, int branch,
                                          const JointVector& reference) const noexcept;

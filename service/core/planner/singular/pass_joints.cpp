@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/kinematics/solve_driven.hpp"
 #include "service/core/planner/singular/pass_joints.hpp"
 
 #include <cmath>
 #include <limits>
 
 #include "meridian/geometry/great_circle.hpp"
+#include "meridian/kinematics/solve_driven.hpp"
 #include "service/core/planner/singular/pole_time.hpp"
 
 namespace meridian {
@@ -71,6 +71,19 @@ double other_tolerance(const PassTask& task, const RobotPass& pass) noexcept {
       break;
   }
   return 0;
+}
+
+bool settles(const PassTask& task, const RobotPass& pass, const JointVector& q) noexcept {
+  constexpr double kLargestLeft = 0.5;  // of a turn of the yaw, after a round
+  if (pass.at != SingularSet::kWrist) return true;
+  const RobotKinematics& robot = task.model.robot;
+  const double forearm = q[robot::kShoulder] + q[robot::kElbow], bend = q[robot::kBend];
+  const double from_axis =
+      robot.upper_arm_mm * std::cos(q[robot::kShoulder]) + robot.forearm_mm * std::cos(forearm);
+  const double pivot = robot.wrist_mm + task.tool_length_mm, roll = std::cos(q[robot::kRoll]);
+  const double tool =
+      std::cos(forearm) * std::cos(bend) - std::sin(forearm) * std::sin(bend) * roll;
+  return std::abs(pivot * tool) * roll * roll < kLargestLeft * std::abs(from_axis);
 }
 
 double time_on_pass(const PassTask& task, const RobotPass& pass, const JointVector& reference,

@@ -51,6 +51,11 @@ struct PassDeviation {
 /// Nearer, it counts as met. 0: there is none.
 [[nodiscard]] double other_tolerance(const PassTask& task, const RobotPass& pass) noexcept;
 
+/// Whether the rounds of solve_with_roll() settle with the joints at `q`. The tip moves the wrist
+/// point, which turns the yaw the more the nearer the base axis is.
+[[nodiscard]] bool settles(const PassTask& task, const RobotPass& pass,
+                           const JointVector& q) noexcept;
+
 [[nodiscard]] double time_on_pass(const PassTask& task, const RobotPass& pass,
                                   const JointVector& reference, int steps) noexcept;
 

@@ -28,17 +28,22 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 class Search {
  public:
   Search(const PassTask& task, const PassRange& range) noexcept
-      : task_(task), range_(range), fit_(task, range) {
+      : task_(task), range_(range), fit_(task, range_) {
     kink_count_ = task.axes.find_kinks(range.from, range.to, kinks_);
   }
 
   RobotPass run() noexcept {
-    const RobotPass found = search();
-    if (found.end > found.begin) return found;
-    const RobotPass turned = search_turned();
-    if (turned.end > turned.begin) return turned;
+    const Best found = search();
+    if (is_long(found.pass)) return found.pass;
+    if (!is_pass(found.pass)) {
+      const Best turned = search_turned();
+      if (is_pass(turned.pass)) return turned.pass;
+    }
+    const Best stopped = search_stopped();
+    if (stopped.time < found.time) return stopped.pass;
+    if (is_pass(found.pass)) return found.pass;
     looks_after_ = false;  // joints leave travel there whatever is chosen
-    return search();
+    return search().pass;
   }
 
  private:
@@ -47,7 +52,34 @@ class Search {
     double time = kNever;
     RobotPass pass;
   };
-  [[nodiscard]] RobotPass search() noexcept {
+  [[nodiscard]] static bool is_pass(const RobotPass& pass) noexcept {
+    return pass.end > pass.begin;
+  }
+  /// In less than the tolerance the joints turn next to standstill.
+  [[nodiscard]] bool is_long(const RobotPass& pass) const noexcept {
+    return is_pass(pass) && !(pass.end - pass.begin < task_.tip_tolerance_mm);
+  }
+  /// Where the machine stops inside the tolerance: passes that begin there with the joints as they
+  /// stand, and such that also end there with any. None is short.
+  [[nodiscard]] Best search_stopped() noexcept {
+    const PassRange given = range_;
+    is_stopped_ = true;
+    Best found;
+    if (range_.stops_at_from != given.rests_at_from) {
+      range_.rests_at_from = range_.rests_at_from | range_.stops_at_from;
+      found = search();
+    }
+    if (!is_pass(found.pass) && range_.stops_at_to != given.rests_at_to) {
+      range_.rests_at_to = range_.rests_at_to | range_.stops_at_to;
+      range_.rest_share = kStopTolerances;
+      found = search();
+      if (!is_pass(found.pass)) found = search_turned();
+    }
+    is_stopped_ = false;
+    if (!is_pass(found.pass)) range_ = given;
+    return found;
+  }
+  [[nodiscard]] Best search() noexcept {
     const double widest = std::max(range_.nearest - range_.from, range_.to - range_.nearest);
     double outside = 0, width = widest;
     Best best;
@@ -61,7 +93,7 @@ class Search {
       for (const int flip : {robot::kBack | robot::kFlip, int{robot::kBack}, int{robot::kFlip}, 0})
         consider(width, SingularSet::kWristAndShoulder, flip, outside, best);
     }
-    return best.pass;
+    return best;
   }
   /// Beside both singularities rounding turns the roll of the exact way: no more of it than helps.
   [[nodiscard]] static bool is_better(double time, const Best& best) noexcept {
@@ -72,6 +104,7 @@ class Search {
   void consider(double width, SingularSet at, int flip, double outside, Best& best) noexcept {
     RobotPass pass = pass_over(width, at);
     pass.branch_after = pass.branch_before ^ flip;
+    if (is_stopped_ && !is_long(pass)) return;
     if (!fit_.fit(pass, 0) || meets_other(pass, kFirstSamples)) return;
     if (!is_inside(pass, kFirstSamples)) return;
     const double time = outside + time_on_pass(task_, pass, fit_.reference(), kSamples / 2);
@@ -83,10 +116,10 @@ class Search {
 
   /// Where the joint at rest leads others out of their travel: passes after which it rests at
   /// another value, some of them so short that it turns next to standstill.
-  [[nodiscard]] RobotPass search_turned() noexcept {
+  [[nodiscard]] Best search_turned() noexcept {
     constexpr double kShares[] = {1, 0.3, 0.1, 0.03, 0.01};
     Best best;
-    if (!contains(range_.rests_at_to, range_.at)) return best.pass;
+    if (!contains(range_.rests_at_to, range_.at)) return best;
     for (const double share : kShares) {
       for (int n = 0; n < 2 * kRestTurns; ++n) {
         const double rest_turn = (n % 2 == 0 ? 1 : -1) * kRestTurn_rad * (1 + n / 2);
@@ -101,7 +134,7 @@ class Search {
       }
       if (best.pass.end > best.pass.begin) break;
     }
-    return best.pass;
+    return best;
   }
   /// Whether the joint may rest behind the pass as far as the range goes.
   [[nodiscard]] bool rests_on(const RobotPass& pass) noexcept {
@@ -167,10 +200,13 @@ class Search {
   bool is_within(RobotPass& pass, double u, const Solution<double>& at) const noexcept {
     if (at.status == SolveStatus::kUnreachable) return false;
     if (first_joint_outside_travel(task_.model, at.q, kTravelMargin) >= 0) return false;
+    if (!settles(task_, pass, at.q)) return false;
     const PassDeviation off = deviation_on_pass(task_, pass, u, at.q);
     pass.axis_deviation_rad = std::max(pass.axis_deviation_rad, off.axis_rad);
-    return off.axis_rad <= kSampledShare * task_.axis_tolerance_rad &&
-           off.tip_mm <= kSampledShare * task_.tip_tolerance_mm;
+    const bool rests = pass.rests_at_end != SingularSet::kNone && !(u < pass.end);
+    const double share = rests ? kStopTolerances : kSampledShare;  // what follows begins there
+    return off.axis_rad <= share * task_.axis_tolerance_rad &&
+           off.tip_mm <= share * task_.tip_tolerance_mm;
   }
   bool is_inside(RobotPass& pass, int samples) const noexcept {
     for (int k = 0; k <= samples; ++k) {
@@ -208,10 +244,11 @@ class Search {
   }
 
   const PassTask& task_;
-  const PassRange& range_;
+  PassRange range_;
   PassFit fit_;
   std::array<double, kKinks> kinks_{};  // u
   std::size_t kink_count_ = 0;
+  bool is_stopped_ = false;
   bool looks_after_ = true;
   bool meets_other_ = false;  // a pass at one singularity, where it was looked for last
 };

@@ -5,6 +5,7 @@
 
 #include "meridian/kinematics/solve_driven.hpp"
 #include "meridian/planner/relaxed_axis.hpp"
+#include "service/core/planner/singular/pole_bounds.hpp"
 #include "service/core/planner/singular/pole_zone.hpp"
 #include "service/core/planner/singular/programmed_tip.hpp"
 
@@ -62,8 +63,11 @@ struct PassRange {
   double nearest = 0, from = 0, to = 0;
   SingularSet rests_at_from = SingularSet::kNone;  ///< whose joints begin there as they stand
   SingularSet rests_at_to = SingularSet::kNone;    ///< whose joints may rest there by any value
-  int branch = 0;                                  ///< on the way in
-  JointVector joints{};                            ///< at `from`
+  /// The same where the machine stops anyway: farther off, but inside the tolerance.
+  SingularSet stops_at_from = SingularSet::kNone, stops_at_to = SingularSet::kNone;
+  double rest_share = kOnPoleTolerances;  ///< of the tolerance: so near joints may rest at `to`
+  int branch = 0;                         ///< on the way in
+  JointVector joints{};                   ///< at `from`
 };
 
 /// What stays the same along a path.

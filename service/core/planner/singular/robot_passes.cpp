@@ -8,6 +8,7 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
+#include "service/core/planner/feed/joint_cells.hpp"
 #include "service/core/planner/singular/pass_joints.hpp"
 #include "service/core/planner/singular/pole_bounds.hpp"
 #include "service/core/planner/singular/pole_time.hpp"
@@ -173,8 +174,12 @@ bool RobotPasses::settle(Singularity at, double nearest) noexcept {
   const bool is_held = goes_on();
   range.from = is_held ? nearest : std::max(emitted_u(), nearest - kPassReach_mm);
   range.to = std::min(wanted, end);
-  range.rests_at_from = is_held || range.from > 0 ? held_ : singular_at(range.from);
-  range.rests_at_to = singular_at(range.to);
+  const bool is_start = !is_held && !(range.from > 0);
+  range.rests_at_from = is_start ? singular_at(range.from, kOnPoleTolerances) : held_;
+  range.rests_at_to = singular_at(range.to, kOnPoleTolerances);
+  if (is_start && !is_exact_) range.stops_at_from = singular_at(range.from, kSampledShare);
+  const bool is_end = is_finished_ && !(range.to < end);
+  if (is_end && !is_exact_) range.stops_at_to = singular_at(range.to, kStopTolerances);
   range.branch = branch_;
   range.joints = follow_to(range.from);
   pass_ = find_robot_pass(task(), range);
@@ -192,10 +197,10 @@ bool RobotPasses::goes_on() const noexcept {
          distance_at(Singularity::kShoulder, u) < tip_tolerance_mm_;
 }
 
-SingularSet RobotPasses::singular_at(double u) const noexcept {
+SingularSet RobotPasses::singular_at(double u, double share) const noexcept {
   SingularSet set = SingularSet::kNone;
   for (const Singularity at : kBothSingularities) {
-    if (distance_at(at, u) < kOnPoleTolerances * tolerance(at)) set = set | only(at);
+    if (distance_at(at, u) < share * tolerance(at)) set = set | only(at);
   }
   return set;
 }

@@ -78,8 +78,8 @@ class RobotPasses : private SpanLookup {
   /// Whether a pass is to begin where the last one ends: joints rest there, or both singularities
   /// are so near that rounding would turn the roll of the exact way.
   [[nodiscard]] bool goes_on() const noexcept;
-  /// So near the path is to them at `u` that their joints may rest.
-  [[nodiscard]] SingularSet singular_at(double u) const noexcept;
+  /// To which of them the path is nearer at `u` than `share` of the tolerance.
+  [[nodiscard]] SingularSet singular_at(double u, double share) const noexcept;
   [[nodiscard]] bool is_minimum(Singularity at, std::int64_t probe) const noexcept;
   [[nodiscard]] double refine_minimum(Singularity at, std::int64_t probe) const noexcept;
   [[nodiscard]] bool is_out_of_reach(const Held& held) const noexcept;
