@@ -10,12 +10,6 @@
 namespace meridian::fences {
 namespace {
 
-std::string without_spaces(const std::string& text) {
-  const auto first = text.find_first_not_of(' ');
-  return first == std::string::npos ? ""
-                                    : text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
 /// The words of any text in lower case, one space before, between and after them.
 std::string spaced(const std::string& text) {
   std::string out = " ";
@@ -32,7 +26,7 @@ std::vector<std::string> read_terms(const SourceFile& glossary) {
     if (line.starts_with("|---")) is_in_table = true;
     if (!is_in_table || !line.starts_with("| ")) continue;
     std::istringstream row(line.substr(2, line.find(" |") - 2));
-    for (std::string term; std::getline(row, term, ',');) terms.push_back(without_spaces(term));
+    for (std::string term; std::getline(row, term, ',');) terms.push_back(trimmed(term));
   }
   return terms;
 }

@@ -19,6 +19,9 @@ struct Finding {
   std::string message;
 };
 
+/// Text without the spaces at its begin and end.
+[[nodiscard]] std::string trimmed(const std::string& text);
+
 /// Splits text at line ends.
 [[nodiscard]] std::vector<std::string> split_lines(const std::string& text);
 

@@ -28,7 +28,7 @@ struct Injection {
     kLag,           ///< `drive` follows with a time constant of `value` s
     kDeaf,          ///< setpoints do not arrive for `value` periods
     kLate,          ///< setpoints arrive `value` periods late from now on
-    kUnreported,    ///< reports do not tell which setpoint was taken
+    kUnreported,    ///< reports do not say which setpoint was taken
     kStale,         ///< reports arrive `value` periods late from now on
     kDoubled,       ///< every report arrives twice
     kSwapped,       ///< every other report is overtaken by the one behind it

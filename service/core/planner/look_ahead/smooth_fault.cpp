@@ -33,17 +33,17 @@ void SmoothRun::end_ahead_of_fault() noexcept {
   supply_ = Supply::kEnded;
   note_relaxed_axis(nullptr);
   // What is published may be run to its rests.
-  std::int64_t smallest = 0;
-  for (const OpenWindow& open : open_) smallest = std::max(smallest, open.rest_cell);
+  std::int64_t first_free_cell = 0;
+  for (const OpenWindow& open : open_) first_free_cell = std::max(first_free_cell, open.rest_cell);
   for (std::int64_t i = spans_.end_index() - 1; i >= spans_.begin_index(); --i) {
     const JointSpan& span = spans_[i];
     for (std::uint32_t n = span.marks.count; n > 0; --n) {
       const BlockMark& mark = span.marks.at[n - 1];
       if (span.band.sequence + mark.ahead >= faulty_block_.sequence) continue;
-      return feed_.end_at(span, static_cast<std::uint64_t>(i), mark.s, smallest);
+      return feed_.end_at(span, static_cast<std::uint64_t>(i), mark.s, first_free_cell);
     }
   }
-  feed_.end_at({}, 0, 0, smallest);  // nothing lies ahead of it
+  feed_.end_at({}, 0, 0, first_free_cell);  // nothing lies ahead of it
 }
 
 /// Names the block ahead of which the machine comes to rest: of the first span that is held back

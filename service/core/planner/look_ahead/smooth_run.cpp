@@ -207,8 +207,8 @@ void SmoothRun::push(const JointSpan& span, double feed_override) noexcept {
 }
 
 void SmoothRun::limit_feed(BandSpan& span) const noexcept {
-  const double largest = model_.max_feed_mm_per_s;
-  if (largest > 0) span.feed_mm_per_s = std::min(span.feed_mm_per_s, largest);
+  const double max_feed = model_.max_feed_mm_per_s;
+  if (max_feed > 0) span.feed_mm_per_s = std::min(span.feed_mm_per_s, max_feed);
 }
 
 void SmoothRun::note_block_ends() noexcept {

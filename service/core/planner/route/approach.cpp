@@ -124,11 +124,11 @@ PathFault Router::retract(const ClBlock& block, PlanCursor& cursor, Staging& out
 
 PathFault Router::lift_longer_tool(const Job& rapid, PlanCursor& cursor, Staging& out) noexcept {
   const double above = (cursor.pose.tip - left_.tip).dot(left_.axis);
-  const double smallest = retracted_.retract - kNoClearance_mm;
-  if (above >= smallest) return {};
+  const double min_above = retracted_.retract - kNoClearance_mm;
+  if (above >= min_above) return {};
   const double missing = model_.clearance_mm - above;
   const double up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, missing);
-  if (above + up < smallest) {
+  if (above + up < min_above) {
     const auto at = solve_near(lifted(cursor.pose, missing), cursor.joints, cursor.tool_length_mm);
     if (const int box = keep_out_between(model_.keep_out, cursor.joints, at.q).box; box >= 0) {
       return {PathFault::Kind::kKeepOut, -1, 1.0 * box};

@@ -41,14 +41,14 @@ bool Router::is_at_pole(const Vector3& axis) const noexcept {
 Router::Job Router::job_of(const ClBlock& block) const noexcept {
   Job job{block, block.kind == BlockKind::kRapid ? MotionKind::kRapid : MotionKind::kCut};
   if (block.kind == BlockKind::kRapid) return job;
-  const double largest = model_.max_feed_mm_per_s;
+  const double max_feed = model_.max_feed_mm_per_s;
   job.feed_factor = feed_factor_;
   if (block.feed_meaning == FeedMeaning::kInverseTime) {
     job.share_per_s = block.feed;
-    job.feed_mm_per_s = largest;
+    job.feed_mm_per_s = max_feed;
   } else {
-    job.feed_mm_per_s = largest > 0 ? std::min(largest, block.feed) : block.feed;
-    if (largest > 0) job.feed_factor = std::min(feed_factor_, largest / job.feed_mm_per_s);
+    job.feed_mm_per_s = max_feed > 0 ? std::min(max_feed, block.feed) : block.feed;
+    if (max_feed > 0) job.feed_factor = std::min(feed_factor_, max_feed / job.feed_mm_per_s);
   }
   return job;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -42,11 +43,17 @@ class Search {
     const Best stopped = search_stopped();
     if (stopped.time < found.time) return stopped.pass;
     if (is_pass(found.pass)) return found.pass;
-    looks_after_ = false;  // joints leave travel there whatever is chosen
+    wanted_ = Wanted::kAny;  // joints leave travel after it whatever is chosen
     return search().pass;
   }
 
  private:
+  /// What a pass has to be besides inside the tolerance.
+  enum class Wanted : std::uint8_t {
+    kLeadsOn,  ///< the joints stay in travel after it
+    kLong,     ///< that, and no shorter than the tolerance
+    kAny
+  };
   /// The best so far.
   struct Best {
     double time = kNever;
@@ -63,7 +70,7 @@ class Search {
   /// stand, and such that also end there with any. None is short.
   [[nodiscard]] Best search_stopped() noexcept {
     const PassRange given = range_;
-    is_stopped_ = true;
+    wanted_ = Wanted::kLong;
     Best found;
     if (range_.stops_at_from != given.rests_at_from) {
       range_.rests_at_from = range_.rests_at_from | range_.stops_at_from;
@@ -75,7 +82,7 @@ class Search {
       found = search();
       if (!is_pass(found.pass)) found = search_turned();
     }
-    is_stopped_ = false;
+    wanted_ = Wanted::kLeadsOn;
     if (!is_pass(found.pass)) range_ = given;
     return found;
   }
@@ -104,13 +111,13 @@ class Search {
   void consider(double width, SingularSet at, int flip, double outside, Best& best) noexcept {
     RobotPass pass = pass_over(width, at);
     pass.branch_after = pass.branch_before ^ flip;
-    if (is_stopped_ && !is_long(pass)) return;
+    if (wanted_ == Wanted::kLong && !is_long(pass)) return;
     if (!fit_.fit(pass, 0) || meets_other(pass, kFirstSamples)) return;
     if (!is_inside(pass, kFirstSamples)) return;
     const double time = outside + time_on_pass(task_, pass, fit_.reference(), kSamples / 2);
     if (!is_better(time, best) || meets_other(pass, kSamples)) return;
     if (!is_inside(pass, kSamples) || !is_inside_at_kinks(pass)) return;
-    if (looks_after_ && !fit_.leads_on(pass)) return;
+    if (wanted_ != Wanted::kAny && !fit_.leads_on(pass)) return;
     best = {time, pass};
   }
 
@@ -248,8 +255,7 @@ class Search {
   PassFit fit_;
   std::array<double, kKinks> kinks_{};  // u
   std::size_t kink_count_ = 0;
-  bool is_stopped_ = false;
-  bool looks_after_ = true;
+  Wanted wanted_ = Wanted::kLeadsOn;
   bool meets_other_ = false;  // a pass at one singularity, where it was looked for last
 };
 

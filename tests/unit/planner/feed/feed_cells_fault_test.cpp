@@ -101,17 +101,11 @@ TEST(CellGrid, TheMachineHasToStandWhereThePathBegins) {
 }
 
 TEST(CellGrid, ARotaryJointThatJumpsToAnotherBranchIsNoPath) {
-  StraightGrid
-      g;  // straight over the pole, 1e-9 rad beside it: C turns by half a turn between two samples
+  // Straight over the pole, 1e-9 rad beside it: C turns by half a turn between two samples.
+  StraightGrid g;
   const ToolPose from{Vector3(0, 0, -20), Vector3(-0.2, 1e-9, 1).normalized()};
   const ToolPose to{Vector3(20, 0, -20), Vector3(0.2, 1e-9, 1).normalized()};
-  FeedSpan span;
-  span.path = make_line(from, to);
-  span.path.tool_length_mm = g.model.tool_length_mm;
-  span.length = span.path.length;
-  span.cells = 41;
-  g.grid.begin(solve(g.model, g.model.tool_length_mm, from, 0, JointVector{}).q,
-               g.model.tool_length_mm);
+  const FeedSpan span = g.begin_line(from, to, 41);
   (void)g.grid.push(span);
   const PathFault fault = g.grid.finish();
   EXPECT_EQ(fault.kind, PathFault::Kind::kJump);

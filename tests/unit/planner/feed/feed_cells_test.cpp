@@ -196,13 +196,7 @@ TEST(CellGrid, ACellBoundsTheDerivativesOfItsSamplesAndAnEighthOfTheirRangeMore)
   StraightGrid g;
   const ToolPose from{Vector3(0, 30, -20), Vector3(0.3, 0.3, 1).normalized()};
   const ToolPose to{Vector3(20, -10, 0), Vector3(-0.2, 0.4, 1).normalized()};
-  FeedSpan span;
-  span.path = make_line(from, to);
-  span.path.tool_length_mm = g.model.tool_length_mm;
-  span.length = span.path.length;
-  span.cells = 40;
-  g.grid.begin(solve(g.model, g.model.tool_length_mm, from, 0, JointVector{}).q,
-               g.model.tool_length_mm);
+  const FeedSpan span = g.begin_line(from, to, 40);
   ASSERT_FALSE(is_fault(g.grid.push(span)));
   ASSERT_FALSE(is_fault(g.grid.finish()));
   const FeedCell& cell = g.grid[17];
@@ -272,13 +266,7 @@ TEST(CellGrid, LeavesLessJerkToCellsBesideThePole) {
   StraightGrid g;
   const ToolPose from{Vector3(0, 0, -20), Vector3(0.1, 2e-7, 1).normalized()};
   const ToolPose to{Vector3(10, 0, -20), Vector3(3e-7, 2e-7, 1).normalized()};
-  FeedSpan span;
-  span.path = make_line(from, to);
-  span.path.tool_length_mm = g.model.tool_length_mm;
-  span.length = span.path.length;
-  span.cells = 60;
-  g.grid.begin(solve(g.model, g.model.tool_length_mm, from, 0, JointVector{}).q,
-               g.model.tool_length_mm);
+  const FeedSpan span = g.begin_line(from, to, 60);
   (void)g.grid.push(span);
   (void)g.grid.finish();
   ASSERT_GT(g.grid.last(), 50);

@@ -32,6 +32,16 @@ struct StraightGrid {
     at = end;
     return span;
   }
+  /// One span straight from pose to pose, at whose begin the grid begins.
+  FeedSpan begin_line(const ToolPose& from, const ToolPose& to, int cells) {
+    FeedSpan span;
+    span.path = make_line(from, to);
+    span.path.tool_length_mm = model.tool_length_mm;
+    span.length = span.path.length;
+    span.cells = cells;
+    grid.begin(solve(model, model.tool_length_mm, from, 0, JointVector{}).q, model.tool_length_mm);
+    return span;
+  }
   PathFault push(double length, int cells = 0) { return grid.push(next(length, cells)); }
   /// Expects cells without a gap, from the begin of every span to its end.
   void expect_gapless(std::vector<double> lengths) const {
