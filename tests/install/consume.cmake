@@ -1,11 +1,5 @@
 # cmake -D BUILD= -D CONSUMER= -D EXAMPLES= -D WORK= -D VERSION= -D COMPILER= -P consume.cmake
-function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT result EQUAL 0)
-    message(FATAL_ERROR "failed (${result}): ${ARGN}\n${output}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
@@ -35,7 +29,7 @@ foreach(example embed kinematics)
   message(STATUS "${example}: ${output}")
 endforeach()
 
-# Drives of one's own, which need nothing but the package: they cut the sample part where the programs are there.
+# Drives of one's own, which need nothing but the package; cut_with_drives.cmake runs them.
 file(GLOB drive_library ${WORK}/prefix/lib*/libmeridian-drive.so ${WORK}/prefix/lib*/*/libmeridian-drive.so)
 if(drive_library)
   foreach(header drive.hpp drive_axis.hpp drive_hardware.hpp drive_action.hpp drive_csp.hpp)
@@ -53,17 +47,6 @@ if(drive_library)
   string(LENGTH "${line_ends}" count)
   if(count GREATER 30)
     message(FATAL_ERROR "the example has ${count} lines, and may have 30")
-  endif()
-  if(EXISTS ${WORK}/prefix/bin/meridiand)
-    run(${CMAKE_COMMAND} -E env MERIDIAN_DRIVES=${WORK}/drives/my_drives MERIDIAN_MAX_MISSING=1000000
-      ${EXAMPLES}/../../deploy/demo ${WORK}/prefix/bin ${WORK}/demo)
-    file(STRINGS ${WORK}/demo/drives.log actions REGEX "spindle")
-    if(NOT actions)
-      message(FATAL_ERROR "it was not my_drives that cut the sample part")
-    endif()
-    message(STATUS "my_drives cut the sample part")
-    run(sh ${CONSUMER}/../check_c_drives ${WORK}/drives/c_drives ${WORK}/prefix)
-    message(STATUS "c_drives: ${output}")
   endif()
 endif()
 
