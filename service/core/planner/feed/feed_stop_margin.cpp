@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "meridian/planner/rate_limits.hpp"
-#include "meridian/planner/stop_product.hpp"
 #include "meridian/planner/time_law.hpp"
 
 namespace meridian {
@@ -20,8 +19,6 @@ constexpr double kHopeless = 0.02;   // of what the piece's own cell allows
 constexpr double kEasing = 0.9;      // of the deceleration that there is: a stop may ease off to it
 constexpr double kRounding_mm = 1e-9;
 constexpr double kTiny = 1e-12;
-constexpr int kStopSteps = 24;           // of a stop
-constexpr double kBetweenSteps = 1.002;  // on ṡ² between the steps
 constexpr double kFast = 1.0002;  // on ṡ² that feed and velocity allow: what a plan may use
 constexpr double kSlow = 0.6;     // rate of plan time below which slow_* may be used
 /// Rates of plan time at which authority is sought where there is none at the full rate.
@@ -54,6 +51,7 @@ FeedStopMargin::FeedStopMargin(const MachineModel& model) noexcept
 void FeedStopMargin::begin(const CellGrid& grid, std::int64_t rest_cell) noexcept {
   grid_ = &grid;
   rest_cell_ = rest_cell;
+  blocks_.begin(grid, rest_cell);
   hold_.last = fault_.last = {};  // what is granted follows from the window alone
 }
 
@@ -180,63 +178,76 @@ bool FeedStopMargin::rises_too_far(const FeedCell& cell, const PathState& begin,
   return false;
 }
 
+FeedStopMargin::Motion FeedStopMargin::motion_in_cell(const StopWalk& walk,
+                                                      bool is_first) const noexcept {
+  const PathState& from = walk.from();
+  const double by_rate = is_first ? slope_ * from.ds : 0;  // of slower states
+  const double rising = std::max(from.dds, 0.0) + by_rate;
+  const double v2 = walk.max_v2();
+  const double speed = std::sqrt(v2), v3 = v2 * speed;
+  const double sinking = 3 * std::min(walk.largest_product(),
+                                      speed * std::max(walk.authority().accel, by_rate - from.dds));
+  return {v2, v3, rising, sinking, 3 * speed * rising};
+}
+
+bool FeedStopMargin::passes(const Caps& caps, const CellBlock& block, const StopWalk& walk,
+                            const Use& use) const noexcept {
+  const double v2 = walk.max_v2_ahead(), speed = std::sqrt(v2);
+  if (v2 > StopWalk::kBetweenSteps * kFast * block.max_b) return false;
+  const double depth = std::max(walk.authority().accel, -walk.from().dds);
+  const double sinking = 3 * std::min(walk.largest_product(), speed * depth);
+  const Share share = share_of(caps, block.bound, block.made_tight, walk.authority(),
+                               {v2, v2 * speed, 0, sinking, 0});
+  return share.acceleration <= std::max(1.0, use.acceleration) &&
+         share.jerk <= std::max(1.0, use.jerk);
+}
+
 bool FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, const PathState& begin,
                              const StopMargin& authority, Use& use) const noexcept {
-  const StopLaw law(begin, authority);
-  const double rest = begin.s + law.distance();
-  const double deepest = begin.ds + 0.5 * begin.dds * begin.dds / authority.jerk;
-  const double largest = largest_stop_product(deepest, authority.accel, authority.jerk);
-  PathState from = begin, to = begin;
-  double s = 0;  // begin of the cell
-  int n = 0;
-  for (std::int64_t k = cell; s + kRounding_mm < rest; ++k) {
+  StopWalk walk(begin, authority);
+  for (std::int64_t k = cell; walk.is_moving();) {
     if (k >= rest_cell_) return false;
+    walk.enter();
+    const CellBlock* block = k > cell && walk.is_braking() ? blocks_.find(k) : nullptr;
+    if (block != nullptr && passes(caps, *block, walk, use)) {
+      for (std::size_t n = 0; n < block->h.size() && walk.is_moving(); ++n, ++k) {
+        walk.pass(block->h[n]);
+      }
+      use.farthest = std::max(use.farthest, k - 1);
+      continue;
+    }
     const FeedCell& here = (*grid_)[k];
-    while (to.s <= s && n < kStopSteps) {
-      from = to;
-      to = law.at(law.duration() * ++n / kStopSteps);
-    }
-    const double x = to.s > from.s ? std::clamp((s - from.s) / (to.s - from.s), 0.0, 1.0) : 0.0;
-    double v2 = kBetweenSteps * (from.ds * from.ds + x * (to.ds * to.ds - from.ds * from.ds));
-    const double by_rate = k == cell ? slope_ * from.ds : 0;  // of slower states
-    const double rising = std::max(from.dds, 0.0) + by_rate;
-    if (from.dds > 0) {
-      v2 = std::max(v2,
-                    kBetweenSteps * square(from.ds + 0.5 * from.dds * from.dds / authority.jerk));
-    }
-    const bool is_too_fast = k > cell ? v2 > kBetweenSteps * kFast * here.max_b
+    const Motion motion = motion_in_cell(walk, k == cell);
+    const bool is_too_fast = k > cell ? motion.v2 > StopWalk::kBetweenSteps * kFast * here.max_b
                                       : rises_too_far(here, begin, authority.jerk);
     if (is_too_fast) {
       use.is_too_fast = true;
       return true;
     }
-    const double speed = std::sqrt(v2), v3 = v2 * speed;
-    const double sinking =
-        3 * std::min(largest, speed * std::max(authority.accel, by_rate - from.dds));
-    add_use(caps, k, authority, {v2, v3, rising, sinking, 3 * speed * rising}, use);
-    s += here.h;
-    use.farthest = std::max(use.farthest, k);
+    const Share share = share_of(caps, here.bound, here.made_tight, authority, motion);
+    use.acceleration = std::max(use.acceleration, share.acceleration);
+    if (share.jerk > use.jerk) {
+      use.jerk = share.jerk;
+      use.cell = k;
+      use.motion = motion;
+    }
+    walk.pass(here.h);
+    use.farthest = std::max(use.farthest, k++);
   }
   return true;
 }
 
-void FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, const StopMargin& authority,
-                             const Motion& m, Use& use) const noexcept {
+FeedStopMargin::Share FeedStopMargin::share_of(const Caps& caps, const CellBound& at,
+                                               double made_tight, const StopMargin& authority,
+                                               const Motion& m) noexcept {
   using Values = CellBound::Values;
-  const CellBound& at = (*grid_)[cell].bound;
   const Values up = at.d1.up * m.rising + at.d1.down * authority.accel + at.d2.up * m.v2;
   const Values down = at.d1.down * m.rising + at.d1.up * authority.accel + at.d2.down * m.v2;
-  use.acceleration =
-      std::max(use.acceleration, (up.max(down) * caps.acceleration).eval().maxCoeff());
   const Values bend_up = at.d2.down * m.sinking_v + at.d2.up * m.rising_v + at.d3.up * m.v3;
   const Values bend_down = at.d2.up * m.sinking_v + at.d2.down * m.rising_v + at.d3.down * m.v3;
   const Values jerk = (at.rate * authority.jerk + bend_up.max(bend_down)) * caps.jerk;
   // Beside the pole rounding shows in third differences of a stop as in those of the plan.
-  const double largest = jerk.maxCoeff() / (*grid_)[cell].made_tight;
-  if (largest <= use.jerk) return;
-  use.jerk = largest;
-  use.cell = cell;
-  use.motion = m;
+  return {(up.max(down) * caps.acceleration).eval().maxCoeff(), jerk.maxCoeff() / made_tight};
 }
 
 FeedStopMargin::Cause FeedStopMargin::cause_of(const Caps& caps, const Use& use) const noexcept {

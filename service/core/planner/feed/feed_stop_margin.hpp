@@ -7,8 +7,10 @@
 #include "meridian/cycle/stop_law.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/planner/time_piece.hpp"
+#include "service/core/planner/feed/cell_blocks.hpp"
 #include "service/core/planner/feed/feed_cells.hpp"
 #include "service/core/planner/feed/feed_piece.hpp"
+#include "service/core/planner/feed/stop_walk.hpp"
 
 namespace meridian {
 
@@ -18,14 +20,16 @@ namespace meridian {
 ///
 /// The stops from both ends of the piece are run through the cells ahead; one that starts slower is
 /// nowhere faster. Every cell has bounds of the joints' derivatives, so the most that stops may use
-/// there is a sum. What they use too much of is lessened until all cells pass; where nothing is
-/// left it is sought for slower rates (docs/motion.md, section 9).
+/// there is a sum; blocks of cells that pass as one are not looked at one by one. What stops use
+/// too much of is lessened until all cells pass; where nothing is left it is sought for slower
+/// rates (docs/motion.md, section 9).
 /// Proof: tests/property/planner/smooth_stop_test.cpp.
 class FeedStopMargin {
  public:
   explicit FeedStopMargin(const MachineModel& model) noexcept;
 
-  /// The pieces to come lie in cells of `grid` before `rest_cell`, where the plan rests.
+  /// The pieces to come lie in cells of `grid` before `rest_cell`, where the plan rests. The cells
+  /// stay as they are until the next begin().
   void begin(const CellGrid& grid, std::int64_t rest_cell) noexcept;
 
   /// Fills in the authority of `time`, made of `piece`: at the full rate or the next one that has
@@ -48,7 +52,11 @@ class FeedStopMargin {
   struct Motion {
     double v2 = 0, v3 = 0, rising = 0, sinking_v = 0, rising_v = 0;
   };
-  /// Largest use of limits by stops: 1 is all.
+  /// Shares of the limits that a motion uses: 1 is all.
+  struct Share {
+    double acceleration = 0, jerk = 0;
+  };
+  /// Largest use of limits by stops.
   struct Use {
     double acceleration = 0, jerk = 0;
     bool is_too_fast = false;   ///< for feed or velocity
@@ -95,8 +103,16 @@ class FeedStopMargin {
   /// Adds the use of all stops under the one from `begin`. False: it ends behind the plan.
   [[nodiscard]] bool add_use(const Caps& caps, std::int64_t cell, const PathState& begin,
                              const StopMargin& authority, Use& use) const noexcept;
-  void add_use(const Caps& caps, std::int64_t cell, const StopMargin& authority,
-               const Motion& motion, Use& use) const noexcept;
+  /// Bounds of what stops under `walk` do in the cell that it enters, the first of them or a later
+  /// one.
+  [[nodiscard]] Motion motion_in_cell(const StopWalk& walk, bool is_first) const noexcept;
+  /// Whether stops that brake under `walk` use no more in any cell of `block` than what is allowed
+  /// or used already.
+  [[nodiscard]] bool passes(const Caps& caps, const CellBlock& block, const StopWalk& walk,
+                            const Use& use) const noexcept;
+  /// What `motion` uses of the limits, made as tight as that.
+  [[nodiscard]] static Share share_of(const Caps& caps, const CellBound& bound, double made_tight,
+                                      const StopMargin& authority, const Motion& motion) noexcept;
   [[nodiscard]] Cause cause_of(const Caps& caps, const Use& use) const noexcept;
 
   int count_ = 0;
@@ -104,6 +120,7 @@ class FeedStopMargin {
   Search hold_, fault_;
   const CellGrid* grid_ = nullptr;
   std::int64_t rest_cell_ = 0;
+  CellBlocks blocks_;
 };
 
 }  // namespace meridian

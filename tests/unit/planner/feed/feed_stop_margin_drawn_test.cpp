@@ -88,14 +88,14 @@ constexpr Row kRows[] = {
     {1193.39, 31433.3, 1e+06, 3413.84, 168496, 1e+06, 1331.73, 204287},
 };
 
-/// Short cells in which two joints bend, each more or less evenly.
-void draw_cells(CellGrid& grid, std::mt19937& random) {
+/// Short cells in which two joints bend, each more or less evenly, from the `first` on.
+void draw_cells(CellGrid& grid, std::mt19937& random, int first) {
   const auto real = [&](double a, double b) {
     return std::uniform_real_distribution<double>(a, b)(random);
   };
   const double bend = real(0, 0.25), twist = real(0, 0.03), fast = real(40, 160);
   double x = 0;
-  for (std::int64_t k = 0; k < kCells; ++k) {
+  for (std::int64_t k = first; k < first + kCells; ++k) {
     FeedCell& cell = grid[k];
     cell.h = real(0.2, 0.5);
     cell.x = x;
@@ -119,16 +119,18 @@ void draw_cells(CellGrid& grid, std::mt19937& random) {
   }
 }
 
-Row grant(unsigned seed) {
+/// The path of the seed begins with cell `first` of the grid.
+Row grant(unsigned seed, int first = 0) {
   std::mt19937 random(seed);
   const auto real = [&](double a, double b) {
     return std::uniform_real_distribution<double>(a, b)(random);
   };
-  MadeCells cells(kCells);
-  draw_cells(cells.grid, random);
+  MadeCells cells(first + kCells);
+  draw_cells(cells.grid, random, first);
   FeedStopMargin margin(cells.model);
-  const int cell = static_cast<int>(real(0, 20));
-  margin.begin(cells.grid, random() % 2 == 0 ? cell + static_cast<int>(real(3, 14)) : kCells);
+  const int cell = first + static_cast<int>(real(0, 20));
+  margin.begin(cells.grid,
+               random() % 2 == 0 ? cell + static_cast<int>(real(3, 14)) : first + kCells);
   TimePiece time;
   for (int n = 0; n < 2; ++n) {  // the second is bounded by what the first got
     time = {};
@@ -162,6 +164,15 @@ TEST(FeedStopMarginDrawn, IsWhatItWasWhenTheRowsWereReviewed) {
       std::printf("},\n");
     }
     ++seed;
+  }
+}
+
+TEST(FeedStopMarginDrawn, IsTheSameBitForBitWhereverBlocksOfCellsBegin) {
+  for (unsigned seed = 1; seed <= 300; ++seed) {
+    const Row begun_with_a_block = grant(seed);
+    for (int first = 1; first < CellBlock::kCells; ++first) {
+      EXPECT_EQ(grant(seed, first), begun_with_a_block) << "seed " << seed << " first " << first;
+    }
   }
 }
 

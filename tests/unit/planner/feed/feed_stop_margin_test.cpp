@@ -43,6 +43,7 @@ struct Path {
     side(d2, here.bound.d2);
     side(d3, here.bound.d3);
     here.bound.rate[0] = std::abs(d1);
+    margin.begin(cells.grid, kCells - 1);
   }
   /// A piece from the middle of `cell` on, at v and a, for 1 ms.
   TimePiece grant(int cell, double v, double a = 0, bool is_tail = false) {

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "meridian/cycle/stop_law.hpp"
+#include "meridian/planner/stop_product.hpp"
+#include "meridian/planner/time_law.hpp"
+
+namespace meridian {
+
+/// A stop on its path through cells, in even steps of time: the state that it has at the begin of
+/// each cell, and bounds of it from there on. s counts from the begin of the first cell. RT: no
+/// allocation.
+class StopWalk {
+ public:
+  StopWalk(const PathState& begin, const StopMargin& authority) noexcept
+      : authority_(authority),
+        law_(begin, authority),
+        rest_(begin.s + law_.distance()),
+        largest_product_(largest_stop_product(peak_of(begin), authority.accel, authority.jerk)),
+        rounding_(kRounding * peak_v2_of(begin)),
+        from_(begin),
+        to_(begin) {}
+
+  [[nodiscard]] const StopMargin& authority() const noexcept { return authority_; }
+  /// Whether it still moves at the begin of the cell.
+  [[nodiscard]] bool is_moving() const noexcept { return s_ + kRounding_mm < rest_; }
+  /// State at the step before the begin of the cell.
+  [[nodiscard]] const PathState& from() const noexcept { return from_; }
+  /// Whether it is slower from there on.
+  [[nodiscard]] bool is_braking() const noexcept { return !(from_.dds > 0); }
+  /// Largest v |a|, of any stop from no faster.
+  [[nodiscard]] double largest_product() const noexcept { return largest_product_; }
+
+  /// Largest ṡ² from the begin of the cell on.
+  [[nodiscard]] double max_v2() const noexcept {
+    const double x = to_.s > from_.s ? std::clamp((s_ - from_.s) / (to_.s - from_.s), 0.0, 1.0) : 0;
+    const double v2 =
+        kBetweenSteps * (from_.ds * from_.ds + x * (to_.ds * to_.ds - from_.ds * from_.ds));
+    return is_braking() ? v2 : std::max(v2, kBetweenSteps * peak_v2_of(from_));
+  }
+  /// The same where it brakes, for all cells from this one on, rounding included.
+  [[nodiscard]] double max_v2_ahead() const noexcept {
+    return (1 + kRounding) * max_v2() + rounding_;
+  }
+
+  /// Begins in the first cell.
+  void enter() noexcept {
+    while (to_.s <= s_ && step_ < kSteps) {
+      from_ = to_;
+      to_ = law_.at(law_.duration() * ++step_ / kSteps);
+    }
+  }
+  /// Goes over a cell of length `h`.
+  void pass(double h) noexcept { s_ += h; }
+
+  static constexpr double kBetweenSteps = 1.002;  ///< on ṡ² between the steps
+
+ private:
+  static constexpr int kSteps = 24;
+  static constexpr double kRounding_mm = 1e-9;
+  static constexpr double kRounding = 1e-6;  ///< of ṡ² in the three phases of a stop, by far
+
+  /// Highest speed of a stop from there.
+  [[nodiscard]] double peak_of(const PathState& p) const noexcept {
+    return p.ds + 0.5 * p.dds * p.dds / authority_.jerk;
+  }
+  [[nodiscard]] double peak_v2_of(const PathState& p) const noexcept {
+    return peak_of(p) * peak_of(p);
+  }
+
+  StopMargin authority_;
+  StopLaw law_;
+  double rest_ = 0, largest_product_ = 0, rounding_ = 0;
+  PathState from_, to_;
+  double s_ = 0;  ///< begin of the cell
+  int step_ = 0;
+};
+
+}  // namespace meridian
