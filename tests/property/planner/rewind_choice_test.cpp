@@ -76,7 +76,7 @@ Case one_sided(Case one) {
   return one;
 }
 
-std::vector<MachineModel> machines() {
+std::vector<MachineModel> machines_with_two_solutions() {
   return {limited(lai_machine(), -720, 720), limited(trunnion_machine(), -720, 720),
           limited(fork_machine(), -720, 720)};
 }
@@ -93,7 +93,7 @@ SmoothTrace checked_plan(const Case& one, Transition transition) {
 }
 
 TEST(RewindChoice, LeadsToTheNearestWindingThatCarriesAPathThatTurnsBack) {
-  for (const MachineModel& machine : machines()) {
+  for (const MachineModel& machine : machines_with_two_solutions()) {
     for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
       SCOPED_TRACE(testing::Message() << machine.name << " " << static_cast<int>(transition));
       // Out of travel, then back by nearly two turns: C has most room three turns back, but not
@@ -122,7 +122,7 @@ TEST(RewindChoice, LeadsToTheWindingThatCarriesFarthestWhereNoneCarriesAll) {
 }
 
 TEST(RewindChoice, LeadsToTheOtherBranchWhereThatIsNearer) {
-  for (const MachineModel& machine : machines()) {
+  for (const MachineModel& machine : machines_with_two_solutions()) {
     for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
       SCOPED_TRACE(testing::Message() << machine.name << " " << static_cast<int>(transition));
       const Case one = at_the_end_of_travel(machine, 400, {0, 125}, step_of(transition));
@@ -138,7 +138,7 @@ TEST(RewindChoice, LeadsToTheOtherBranchWhereThatIsNearer) {
 }
 
 TEST(RewindChoice, StaysOnTheBranchWhereTheTiltHasNoTravelOnTheOther) {
-  for (const MachineModel& machine : machines()) {
+  for (const MachineModel& machine : machines_with_two_solutions()) {
     for (const Transition transition : {Transition::kExactStop, Transition::kSmooth}) {
       SCOPED_TRACE(testing::Message() << machine.name << " " << static_cast<int>(transition));
       const Case one = one_sided(at_the_end_of_travel(machine, 400, {0, 125}, step_of(transition)));
