@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Many pages, one of them frozen, during a cut: the machine does not notice, and figures go to a real Prometheus.
-// MERIDIAN_PANEL_MINUTES: how long (0.3).
+// MERIDIAN_PANEL_MINUTES: how long (0.2).
 import { connect } from "node:net";
 import { execFileSync, spawn } from "node:child_process";
 import { writeFileSync } from "node:fs";
@@ -11,7 +11,7 @@ import { frame, upgrade } from "./raw_http.mjs";
 
 const [bin, source] = process.argv.slice(2).map((path) => resolve(path));
 const plant = new Plant(bin, source, "lai.toml");
-const kMinutes = Number(process.env.MERIDIAN_PANEL_MINUTES ?? 0.3);
+const kMinutes = Number(process.env.MERIDIAN_PANEL_MINUTES ?? 0.2);
 const kClients = 10, kMaxMemory_kib = 64 * 1024, kMaxShare = 0.25, kPong = 10;
 
 // A page that reads all it gets; a frozen one reads nothing after the handshake.
