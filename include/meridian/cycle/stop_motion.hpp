@@ -22,6 +22,9 @@ inline constexpr double kReturnShare = 0.2;
 /// A hold that has gone along the plan for so long without authority for a law of its own takes the
 /// stop that its window ends in, s.
 inline constexpr double kAlongPlan_s = 0.3;
+/// But not where the planner could not go on from there, if the rate brings the plan to rest in so
+/// much of its time.
+inline constexpr double kRestByRate_s = 2;
 
 /// How fast a FaultStop may lower the rate of plan time with `share` of the FaultStop limits. Plans
 /// leave room for the rate's own bounds Ω₁, Ω₂ in the limits v, a, j of every joint; what the
@@ -273,11 +276,18 @@ inline void leave_plan(Cycle& c) noexcept {
   lay_out_stop(c.state, c.state.on_path, authority);
 }
 
+/// Whether a stop along the plan may end in its window's tail: the program is void, or can go on
+/// from there, or nothing else would end the stop.
+[[nodiscard]] inline bool may_keep_tail(const Cycle& c) noexcept {
+  return c.state.state != State::kHolding || c.reader.is_tail_remembered() ||
+         c.state.rate.plan_time_to_rest() > kRestByRate_s;
+}
+
 /// Goes on with a stop along the plan by the periods of this cycle.
 [[nodiscard]] inline bool follow_stop_by_rate(Cycle& c) noexcept {
   StopInProgress& stop = c.state.stop;
   const bool is_late = stop.time > kAlongPlan_s && !c.state.single_block.is_braking();
-  if (is_late && is_on_move(c)) c.reader.keep_tail(*c.reader.piece());
+  if (is_late && is_on_move(c) && may_keep_tail(c)) c.reader.keep_tail(*c.reader.piece());
   bool goes_on = true;
   for (int n = 0; n < c.periods && goes_on; ++n) {
     stop.time += c.dt;

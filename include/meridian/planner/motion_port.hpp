@@ -167,6 +167,8 @@ class MotionReader {
   /// A call drops at most this many pieces and goes on at the next call: an emptied queue never
   /// costs a cycle its deadline.
   static constexpr int kMaxDrops = 128;
+  /// Windows published after one from whose tail the planner can still go on.
+  static constexpr std::uint32_t kRemembered = 2;
 
   explicit MotionReader(MotionPort& port) noexcept : port_(port) {}
 
@@ -231,6 +233,15 @@ class MotionReader {
   void keep_tail(const TimePiece& piece) noexcept {
     kept_tail_ = pack(piece);
     port_.tail_entered.store(kept_tail_, std::memory_order_release);
+  }
+
+  /// Whether the planner could go on from the end of the tail of the window in force: it remembers
+  /// the cells of the last three windows.
+  [[nodiscard]] bool is_tail_remembered() noexcept {
+    const std::size_t size = port_.times.size();
+    const TimePiece* newest = size > 0 ? port_.times.peek(size - 1) : nullptr;
+    return piece_ != nullptr && newest != nullptr && newest->epoch == piece_->epoch &&
+           newest->window - piece_->window <= kRemembered;
   }
 
   /// Only at rest: from now on pieces of `epoch` alone are taken; what the port holds of another is

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "property/cycle/operated_run.hpp"
+#include "property/cycle/stepped_program.hpp"
 #include "property/path/hostile_path.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "support/draws.hpp"
@@ -166,6 +167,38 @@ TEST(SmoothMotion, GoesOnWhereBlocksComeTooLate) {
   std::printf("%llu times dry; worst v %.6f a %.6f j %.6f\n", static_cast<unsigned long long>(dry),
               worst.v, worst.a, worst.j);
   EXPECT_GT(dry, static_cast<unsigned>(test::draws(2)) * 2U);
+}
+
+/// All of a program is published before it starts. Wherever a hold ends, the planner can go on.
+TEST(SmoothMotion, GoesOnAfterHoldsWhereThePlanIsFarAhead) {
+  int holds = 0, along_plan = 0;
+  for (std::uint32_t seed = 11; seed < 11 + std::max(test::draws(6), 3); ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    test::RandomPrograms random(seed);
+    const test::single_block::Job job(seed);
+    SmoothRunning run(job.machine, job.blocks, job.start());
+    ASSERT_TRUE(run.is_started());
+    double hold_at = 0, holding = 0;
+    for (double t = 0; t < 200 && !run.is_over(); t += run.world.dt()) {
+      const State state = run.world.now();
+      if (state == State::kHeld) {
+        run.command(Verb::kResume);
+        along_plan += holding > 0.35;
+        holding = 0;
+        hold_at = t + random.log_uniform(0.05, 1);
+      } else if (state == State::kRunning && t > hold_at) {
+        run.command(Verb::kHold);
+        ++holds;
+      } else {
+        run.run();
+        holding += state == State::kHolding ? run.world.dt() : 0;
+      }
+    }
+    EXPECT_TRUE(run.is_over());
+    EXPECT_EQ(run.world.state.starvations, 0U);
+  }
+  std::printf("%d holds, %d of more than 0.35 s\n", holds, along_plan);
+  EXPECT_GT(along_plan, 0);
 }
 
 /// The last cut of a run is too short for a span, and turns the axis: what follows starts from

@@ -172,6 +172,19 @@ TEST(MotionPort, TheMotionAheadOfATailThatIsRunEndsWithIt) {
   EXPECT_EQ(script.reader.path_ahead(4), nullptr);
 }
 
+TEST(MotionPort, KnowsWhetherThePlannerRemembersTheTailOfTheWindowInForce) {
+  Script script;
+  EXPECT_FALSE(script.reader.is_tail_remembered()) << "nothing is in force";
+  script.move(7, 10, true);
+  script.writer.publish();
+  ASSERT_NE(script.reader.advance(), nullptr);
+  for (std::uint32_t after = 0; after < 5; ++after) {
+    EXPECT_EQ(script.reader.is_tail_remembered(), after <= 2) << after;
+    script.move(8 + after, 20 + after, false);
+    script.writer.publish();
+  }
+}
+
 TEST(MotionPort, DropsWhatBelongsToAnotherEpoch) {
   Script script;
   for (std::uint64_t n = 0; n < 600; ++n) {
