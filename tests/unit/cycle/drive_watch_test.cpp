@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "program.hpp"
@@ -111,6 +112,38 @@ TEST(DriveWatch, AWindowFromBeforeTheMachineWasOnSaysNothing) {
   move_one_window();
   idle.run(4 * kWatchWindow_s);
   EXPECT_EQ(idle.alarms(), 0) << "two windows in a row, not two in all";
+}
+
+TEST(DriveWatch, BeginsItsFirstWindowBehindTheGrace) {
+  const auto off_again = [](Idle& idle) {
+    ASSERT_TRUE(idle.world.enable());
+    idle.world.command(Verb::kDisable);
+    ASSERT_TRUE(idle.world.run_until(State::kOff, 1));
+  };
+  const auto end_grace = [](Idle& idle) {
+    while (idle.world.state.state_time + idle.world.dt() <= kOffGrace_s) idle.world.run();
+  };
+  Idle sagging;
+  sagging.run(1);
+  while (std::abs(sagging.world.state.watch.time - 0.4 * kWatchWindow_s) > sagging.world.dt()) {
+    sagging.world.run();
+  }
+  off_again(sagging);
+  sagging.run(0.3, 0, 3);
+  end_grace(sagging);
+  sagging.run(kWatchWindow_s, 0, 1);
+  sagging.run(4 * kWatchWindow_s);
+  EXPECT_EQ(sagging.alarms(), 0) << "a window that was open before counts neither its time nor sag";
+
+  Idle moved;
+  moved.run(1);
+  while (moved.world.state.watch.time > 0) moved.world.run();
+  moved.run(kWatchWindow_s, 0, 0.5);
+  off_again(moved);
+  end_grace(moved);
+  moved.run(kWatchWindow_s, 0, 0.5);
+  moved.run(4 * kWatchWindow_s);
+  EXPECT_EQ(moved.alarms(), 0) << "nor does a window that was full";
 }
 
 TEST(DriveWatch, IsAnAlarmOfItsOwnInFaultAndInDisabling) {

@@ -88,6 +88,40 @@ TEST(DryRun, NeverSendsASetpointThatDrivesFollow) {
   }
 }
 
+TEST(DryRun, HearsTheEmergencyInputForASecondAndForAsLongAsTheCycleStalled) {
+  const MachineModel machine = test::lai_machine();
+  CycleInputs in;
+  in.now_ns = 10'000'000'000;
+  in.feedback.emergency_stop = true;
+  const auto is_heard_after = [&](double seconds) {
+    in.feedback.emergency_ns = in.now_ns - static_cast<std::int64_t>(1e9 * seconds);
+    return is_emergency_heard(machine, in);
+  };
+  EXPECT_TRUE(is_heard_after(0.999));
+  EXPECT_FALSE(is_heard_after(1.001));
+  in.lost_periods = 5;
+  const double stalled = 5e-9 * static_cast<double>(machine.cycle_ns);
+  EXPECT_TRUE(is_heard_after(0.999 + stalled));
+  EXPECT_FALSE(is_heard_after(1.001 + stalled));
+  in.feedback.emergency_stop = false;
+  EXPECT_FALSE(is_heard_after(0)) << "it is closed";
+  in = {};
+  in.now_ns = 500'000'000;
+  in.feedback.emergency_stop = true;
+  EXPECT_FALSE(is_emergency_heard(machine, in)) << "nobody ever said so";
+}
+
+TEST(DryRun, StandsInForDrivesThatHaveSeenTheLastCycleThatRan) {
+  CycleInputs in;
+  in.cycle = 100;
+  in.lost_periods = 2;
+  in.now_ns = 7;
+  const DryRun run;
+  const Feedback dry = dry_feedback(run.machine, run.world.state, in);
+  EXPECT_EQ(dry.cycle_seen, 97U);
+  EXPECT_EQ(dry.arrival_ns, 7);
+}
+
 TEST(DryRun, BeginsWhereDrivesStandThatAllHaveTheirReferencesElseAtHome) {
   for (const bool is_referenced : {true, false}) {
     DryRun dry(true);

@@ -45,6 +45,14 @@ TEST(StopWalk, BoundsTheSpeedInEveryCellFromItsBeginOn) {
   }
 }
 
+TEST(StopWalk, BoundsTheSpeedHardlyAboveThatAtItsBegin) {
+  StopWalk walk({0, 50, 0, 0}, {2000, 40000});
+  walk.enter();
+  EXPECT_TRUE(walk.is_braking());
+  EXPECT_GT(walk.max_v2(), 50 * 50);
+  EXPECT_LT(walk.max_v2(), 1.005 * 50 * 50);
+}
+
 TEST(StopWalk, BoundsTheSpeedThatAStopStillGains) {
   const PathState begin{0, 50, 1000, 0};
   const StopMargin authority{2000, 40000};
