@@ -70,13 +70,12 @@ LimitView LimitMap::look(const PathPiece& path, const TimePiece& piece, double p
     const double accel = std::abs(parts.accel_change + parts.accel_bend);
     const double jerk = std::abs(parts.jerk_change + parts.jerk_bend);
     const auto n = static_cast<std::size_t>(i);
+    const double slope = is_smooth ? rates_.slope_per_s : kRateSlope_per_s;
+    const double curvature = is_smooth ? rates_.curvature_per_s2 : kRateCurvature_per_s2;
     const double uses[3] = {
         velocity / (is_smooth ? smooth_.velocity[n] : own.velocity),
-        (accel + (is_smooth ? rates_.slope_per_s : kRateSlope_per_s) * velocity) /
-            (is_smooth ? smooth_.acceleration[n] : own.acceleration),
-        is_smooth
-            ? jerk / smooth_.jerk[n]
-            : (jerk + 3 * kRateSlope_per_s * accel + kRateCurvature_per_s2 * velocity) / own.jerk};
+        (accel + slope * velocity) / (is_smooth ? smooth_.acceleration[n] : own.acceleration),
+        (jerk + 3 * slope * accel + curvature * velocity) / own.jerk};
     for (int order = 0; order < 3; ++order) {
       if (!weigh(uses[order], order == 0 ? kNearShare : kRampShare, joint_limit(i, order)))
         continue;

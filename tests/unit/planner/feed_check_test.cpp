@@ -15,13 +15,13 @@ namespace {
 FeedLimits unit_limits() {
   FeedLimits limits;
   limits.count = 1;
-  limits.velocity[0] = limits.acceleration[0] = limits.jerk[0] = 1;
+  limits.velocity[0] = limits.acceleration[0] = limits.jerk[0] = limits.full_jerk[0] = 1;
   return limits;
 }
 
 /// A cell in which u runs evenly and the joint's derivative number `order` is `of(k)` at place k.
 template <class Of>
-FeedUse use_at_even_speed(int order, const Of& of, double slope = 0) {
+FeedUse use_at_even_speed(int order, const Of& of, double slope = 0, double curvature = 0) {
   FeedCell cell;
   cell.h = 0.1;
   for (int k = 0; k <= FeedCell::kSteps; ++k) {
@@ -31,6 +31,7 @@ FeedUse use_at_even_speed(int order, const Of& of, double slope = 0) {
   }
   FeedLimits limits = unit_limits();
   limits.slope = slope;
+  limits.curvature = curvature;
   return use_of(limits, cell, {1, 0, 0});
 }
 
@@ -63,6 +64,28 @@ TEST(FeedCheck, CountsTheRateFilterAsAccelerationBetweenSamplesToo) {
   EXPECT_NEAR(use_at_even_speed(1, bump, 0.25).acceleration, 0.25, 1e-12);
 }
 
+TEST(FeedCheck, CountsWhatAccelerationAndVelocityLeaveToTheRateFilterAsJerk) {
+  const auto bump = [](int k) { return 1 - 0.02 * (k - 3.5) * (k - 3.5); };
+  EXPECT_NEAR(use_at_even_speed(1, bump, 0.25, 0.1).jerk, 0.1, 1e-12);
+  EXPECT_NEAR(use_at_even_speed(2, bump, 0.25, 0.1).jerk, 3 * 0.25, 1e-12);
+  EXPECT_NEAR(use_at_even_speed(3, bump, 0.25, 0.1).jerk, 1, 1e-12);
+  CellSample at;
+  at.max_b = 100;
+  at.d1[0] = 1;
+  at.d2[0] = -2;
+  FeedLimits limits = unit_limits();
+  limits.slope = 0.25;
+  limits.curvature = 0.1;
+  FeedUse use;
+  add_use(limits, at, 2, 3, 5, use);  // q̇ 2, q̈ 3 - 8, q⃛ 5 - 36
+  EXPECT_NEAR(use.jerk, 31 + 3 * 0.25 * 5 + 0.1 * 2, 1e-12);
+}
+
+TEST(FeedCheck, SeesNoTopBesideAChangeOfTheJerksSign) {
+  const auto swing = [](int k) { return std::cos(k + 2.7); };
+  EXPECT_LT(use_at_even_speed(3, swing).jerk, 1.03) << "of |jerk| a parabola would rise to 1.13";
+}
+
 TEST(FeedCheck, TakesAStandstillForAUseWithoutBound) {
   FeedCell cell;
   cell.h = 1;
@@ -74,14 +97,19 @@ struct Bent {
   double d1 = 0.5, d2 = 0.25, d3 = 0.125, v = 2, a = 3, j = 5;
   [[nodiscard]] double acceleration() const { return d1 * a + d2 * v * v; }
   [[nodiscard]] double jerk() const { return d1 * j + 3 * d2 * v * a + d3 * v * v * v; }
+  /// The jerk and what the rate filter asks for beside it, by bent_limits().
+  [[nodiscard]] double jerk_with_rate() const {
+    return std::abs(jerk()) + 3 * 0.3 * std::abs(acceleration()) + 0.7 * d1 * v;
+  }
 };
 
 FeedLimits bent_limits() {
   FeedLimits limits = unit_limits();
   limits.velocity[0] = 10;
   limits.acceleration[0] = 20;
-  limits.jerk[0] = 40;
+  limits.full_jerk[0] = 40;
   limits.slope = 0.3;
+  limits.curvature = 0.7;
   return limits;
 }
 
@@ -89,7 +117,7 @@ void expect_use(const FeedUse& use, const Bent& bent, double max_b) {
   EXPECT_NEAR(use.b, bent.v * bent.v / max_b, 1e-12);
   EXPECT_NEAR(use.velocity, bent.d1 * bent.v / 10, 1e-12);
   EXPECT_NEAR(use.acceleration, (bent.acceleration() + 0.3 * bent.d1 * bent.v) / 20, 1e-12);
-  EXPECT_NEAR(use.jerk, bent.jerk() / 40, 1e-12);
+  EXPECT_NEAR(use.jerk, bent.jerk_with_rate() / 40, 1e-12);
 }
 
 TEST(FeedCheck, TakesEveryTermOfAJointThatBends) {
@@ -135,7 +163,7 @@ TEST(FeedCheck, KnowsTheMotionOfALaw) {
     EXPECT_NEAR(use.velocity, bent.d1 * bent.v / 10, 1e-12);
     EXPECT_NEAR(use.acceleration, (std::abs(bent.acceleration()) + 0.3 * bent.d1 * bent.v) / 20,
                 1e-12);
-    EXPECT_NEAR(use.jerk, std::abs(bent.jerk()) / 40, 1e-12);
+    EXPECT_NEAR(use.jerk, bent.jerk_with_rate() / 40, 1e-12);
   }
 }
 

@@ -15,10 +15,8 @@ constexpr double kLargestJump = 1.0;  // rad between two samples: another branch
 /// Of a joint at the begin: rounding, 1e-10 rad of the redundant joint 8 µrad from the pole, and of
 /// slides that make up for it so much of their way to its axis.
 constexpr double kStep_mm = 1e-7, kStep_rad = 1e-9;
-constexpr double kNoCell_mm = 1e-6;    // of u: an end that is not worth a cell
-constexpr double kMinSplit_mm = 5e-4;  // of u: below, motion would creep
-constexpr double kMaxCells = 2;        // of time, that one takes where it is slowest
-constexpr int kHalvings = 16;          // of halving: lengths of a ratio of 60 000
+constexpr double kNoCell_mm = 1e-6;  // of u: an end that is not worth a cell
+constexpr int kHalvings = 16;        // of halving: lengths of a ratio of 60 000
 
 /// The range of the samples, and an eighth of it either side for what lies between.
 CellBound bound_of(const std::array<CellSample, FeedCell::kSteps + 1>& at) noexcept {
@@ -66,49 +64,6 @@ void CellGrid::begin(const JointVector& joints, double tool_length_mm) noexcept 
   tool_length_mm_ = tool_length_mm;
   is_finished_ = false;
   fault_ = {};
-}
-
-double CellGrid::time_at(const FeedSpan& span, double x) const noexcept {
-  JointVector reference = joints_;
-  CellSample at;
-  return is_fault(sample(span, x, reference, at)) ? 0 : time_per_u(limits_, at);
-}
-
-int CellGrid::cells_of(const FeedSpan& span) const noexcept {
-  if (span.cells > 0) return span.cells;
-  constexpr int kProbes = 4;
-  double time = 0;
-  for (int k = 0; k < kProbes; ++k)
-    time += time_at(span, span.begin + span.length * (k + 0.5) / kProbes);
-  time *= span.length / kProbes;
-  return static_cast<int>(std::ceil(std::min(time / settings_.cell_s, 1.0 * kMaxPerSpan)));
-}
-
-void CellGrid::draft_cells(const FeedSpan& span) noexcept {
-  const int room = kDrafts - static_cast<int>(drafts_.size()) - kWaiting;
-  const int cells = std::clamp(cells_of(span), 1, std::clamp(room, 1, kMaxPerSpan));
-  const double h = span.length / cells;
-  // A span that says how many cells it becomes is graded already.
-  const bool is_graded = model_.family == MachineFamily::kRobot && span.cells == 0;
-  for (int k = 0; k < cells; ++k) {
-    if (is_graded) {
-      draft_graded(span, span.begin + k * h, h);
-    } else {
-      drafts_.push_back({waiting_count_ - 1, span.begin + k * h, h});
-    }
-  }
-}
-
-void CellGrid::draft_graded(const FeedSpan& span, double x, double h) noexcept {
-  const double slowest =
-      std::max({time_at(span, x), time_at(span, x + 0.5 * h), time_at(span, x + h)});
-  const bool has_room = static_cast<int>(drafts_.size()) < kDrafts - kMaxPerSpan;
-  if (slowest * h > kMaxCells * settings_.cell_s && h > kMinSplit_mm && has_room) {
-    draft_graded(span, x, 0.5 * h);
-    draft_graded(span, x + 0.5 * h, 0.5 * h);
-  } else {
-    drafts_.push_back({waiting_count_ - 1, x, h});
-  }
 }
 
 void CellGrid::halve(double left, double ratio, int rounds) noexcept {
@@ -194,19 +149,6 @@ void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
   if (make_cells().kind == PathFault::Kind::kNone) return;
   fault_ = {};  // it ends a cell earlier
   drafts_.clear();
-}
-
-/// Beside a singular place of a robot joints turn sharply: into halves, as long as there is room.
-bool CellGrid::split(std::size_t draft) noexcept {
-  if (model_.family != MachineFamily::kRobot || drafts_.size() == drafts_.capacity() ||
-      drafts_[draft].h < kMinSplit_mm) {
-    return false;
-  }
-  Draft half = drafts_[draft];
-  half.h = drafts_[draft].h *= 0.5;
-  half.x += half.h;
-  drafts_.insert(drafts_.begin() + static_cast<std::ptrdiff_t>(draft) + 1, half);
-  return true;
 }
 
 PathFault CellGrid::make_cells() noexcept {

@@ -58,17 +58,27 @@ FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell, const Cell
   for (int k = 0; k <= kCellSteps; ++k) share[k] = b[k] / cell.at[k].max_b;
   use.b = peak_of(share);
   for (int i = 0; i < limits.count; ++i) {
-    Samples velocity, acceleration, jerk;
+    Samples velocity, alone, acceleration, own_jerk, jerk;
     for (int k = 0; k <= kCellSteps; ++k) {
       const CellSample& at = cell.at[k];
       velocity[k] = at.d1[i] * v[k];
-      acceleration[k] =
-          std::abs(at.d1[i] * a[k] + at.d2[i] * b[k]) + limits.slope * std::abs(velocity[k]);
-      jerk[k] = at.d1[i] * j[k] + 3 * at.d2[i] * v[k] * a[k] + at.d3[i] * v[k] * b[k];
+      alone[k] = at.d1[i] * a[k] + at.d2[i] * b[k];
+      acceleration[k] = std::abs(alone[k]) + limits.slope * std::abs(velocity[k]);
+      own_jerk[k] = at.d1[i] * j[k] + 3 * at.d2[i] * v[k] * a[k] + at.d3[i] * v[k] * b[k];
+      jerk[k] = std::abs(own_jerk[k]) + 3 * limits.slope * std::abs(alone[k]) +
+                limits.curvature * std::abs(velocity[k]);
     }
-    use.velocity = std::max(use.velocity, peak_of(velocity) / limits.velocity[i]);
+    const double fastest = peak_of(velocity);
+    double largest = peak_of(jerk);
+    // Beside a corner of |jerk| or |acceleration| a parabola rises too far: there the peaks of the
+    // parts speak.
+    if (largest > limits.full_jerk[i]) {
+      largest = std::min(largest, peak_of(own_jerk) + 3 * limits.slope * peak_of(alone) +
+                                      limits.curvature * fastest);
+    }
+    use.velocity = std::max(use.velocity, fastest / limits.velocity[i]);
     use.acceleration = std::max(use.acceleration, peak_of(acceleration) / limits.acceleration[i]);
-    use.jerk = std::max(use.jerk, peak_of(jerk) / limits.jerk[i]);
+    use.jerk = std::max(use.jerk, largest / limits.full_jerk[i]);
   }
   return use;
 }
@@ -106,11 +116,12 @@ void add_use(const FeedLimits& limits, const CellSample& at, double v, double a,
   for (int i = 0; i < limits.count; ++i) {
     const double velocity = std::abs(at.d1[i] * v);
     const double acceleration = std::abs(at.d1[i] * a + at.d2[i] * v * v);
-    const double jerk = std::abs(at.d1[i] * j + 3 * at.d2[i] * v * a + at.d3[i] * v * v * v);
+    const double jerk = std::abs(at.d1[i] * j + 3 * at.d2[i] * v * a + at.d3[i] * v * v * v) +
+                        3 * limits.slope * acceleration + limits.curvature * velocity;
     use.velocity = std::max(use.velocity, velocity / limits.velocity[i]);
     use.acceleration = std::max(use.acceleration,
                                 (acceleration + limits.slope * velocity) / limits.acceleration[i]);
-    use.jerk = std::max(use.jerk, jerk / limits.jerk[i]);
+    use.jerk = std::max(use.jerk, jerk / limits.full_jerk[i]);
   }
 }
 

@@ -10,6 +10,7 @@ FeedLimits make_feed_limits(const MachineModel& model, const RateReserve& reserv
   FeedLimits out;
   out.count = limited_count(model);
   out.slope = reserve.slope;
+  out.curvature = reserve.curvature;
   for (int i = 0; i < out.count; ++i) {
     const JointLimits& limits = limited_spec(model, i).limits;
     const double wanted =
@@ -18,6 +19,7 @@ FeedLimits make_feed_limits(const MachineModel& model, const RateReserve& reserv
     out.velocity[i] = share * limits.velocity;
     out.acceleration[i] = share * limits.acceleration;
     out.jerk[i] = limits.jerk - share * wanted;
+    out.full_jerk[i] = limits.jerk;
   }
   return out;
 }

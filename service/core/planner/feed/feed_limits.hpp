@@ -19,7 +19,16 @@ struct RateReserve {
 struct FeedLimits {
   int count = 0;
   LimitedVector velocity{}, acceleration{}, jerk{};
-  double slope = 0;  ///< of the rate, 1/s
+  LimitedVector full_jerk{};        ///< the machine's
+  double slope = 0, curvature = 0;  ///< of the rate, 1/s and 1/s²
+
+  /// Jerk less what A and V may take of it, and no room for the rate beside.
+  [[nodiscard]] FeedLimits without_rate() const noexcept {
+    FeedLimits out = *this;
+    out.full_jerk = jerk;
+    out.slope = out.curvature = 0;
+    return out;
+  }
 
   /// Every limit times a share.
   [[nodiscard]] FeedLimits scaled(double share_v, double share_a, double share_j) const noexcept {
@@ -28,6 +37,7 @@ struct FeedLimits {
       out.velocity[i] *= share_v;
       out.acceleration[i] *= share_a;
       out.jerk[i] *= share_j;
+      out.full_jerk[i] *= share_j;
     }
     return out;
   }

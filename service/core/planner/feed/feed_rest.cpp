@@ -54,9 +54,10 @@ double steady_b(const CellGrid& grid, const FeedLimits& limits, std::int64_t fir
   return largest;
 }
 
-RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_start,
-                        double max_b) noexcept {
+RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_start, double max_b,
+                        RestRoom room) noexcept {
   const double h = cell.h;
+  const FeedLimits without_rate = limits.without_rate();
   const CellSample& rest = is_start ? cell.at.front() : cell.at.back();
   const auto is_within = [&](double jerk) {
     FeedUse use;
@@ -65,15 +66,17 @@ RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_
       const double t = std::cbrt(6 * x / jerk);
       const double a = is_start ? jerk * t : -jerk * t;
       const int sample = is_start ? k : FeedCell::kSteps - k;
-      add_use(limits, cell.at[sample], 0.5 * jerk * t * t, a, jerk, use);
+      const double v = 0.5 * jerk * t * t;
+      add_use(limits, cell.at[sample], v, a, jerk, use);
+      if (room == RestRoom::kLargest) add_use(without_rate, cell.at[sample], v, a, jerk, use);
     }
     return use.worst() < kRestShare * cell.tight && use.b < kRestShare;
   };
   // b = (j t²/2)² at t = (6h/j)^⅓ is (6h)^(4/3) j^(2/3) / 4.
   double jerk = std::pow(0.8 * std::max(max_b, kZeroDerivative), 1.5) / (36 * h * h);
   for (int i = 0; i < limits.count; ++i) {
-    jerk = std::min(jerk,
-                    kRestShare * limits.jerk[i] / std::max(std::abs(rest.d1[i]), kZeroDerivative));
+    jerk = std::min(
+        jerk, kRestShare * limits.full_jerk[i] / std::max(std::abs(rest.d1[i]), kZeroDerivative));
   }
   double too_much = 0;
   for (int n = 0; n < kRestSteps && !is_within(jerk); ++n) {

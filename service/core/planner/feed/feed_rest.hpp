@@ -22,10 +22,14 @@ struct RestCell {
 [[nodiscard]] double steady_b(const CellGrid& grid, const FeedLimits& limits, std::int64_t first,
                               std::int64_t last) noexcept;
 
+/// Room that a first or last cell leaves for the rate of plan time: what its own acceleration and
+/// velocity ask for, or the largest that a neighbour may.
+enum class RestRoom : std::uint8_t { kOwn, kLargest };
+
 /// The fastest, to a fortieth of its jerk, that keeps most of every limit in `cell` and leaves it
 /// with u̇² <= 0.8 `max_b`. Always finds one.
 [[nodiscard]] RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_start,
-                                      double max_b) noexcept;
+                                      double max_b, RestRoom room = RestRoom::kOwn) noexcept;
 
 /// The last resort, from rest to rest: jerk +J, -J, -J, +J for a quarter of the duration each.
 /// Velocity, acceleration and jerk of every joint scale with 1/T, 1/T², 1/T³, so the T that keeps

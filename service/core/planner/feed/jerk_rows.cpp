@@ -77,6 +77,7 @@ void JerkRows::add_jerk(const FeedLimits& limits, const JerkCell& at) noexcept {
     }
     sample.max_b = at.max_b[p];
     sample.bar = at.bar[p];
+    sample.bar_slope = at.bar_slope[p];
     sample.at = &at.cell->at[p * FeedCell::kSteps / 2];
   }
   samples[0].max_slope = at.max_slope;
@@ -84,17 +85,16 @@ void JerkRows::add_jerk(const FeedLimits& limits, const JerkCell& at) noexcept {
   samples[2].max_slope = at.max_end;
 
   // Largest |b''|, which is the same all over the cell, and by which row.
+  std::array<std::array<JerkLine, kMaxLimited>, 3> lines;
   double max_bend = std::numeric_limits<double>::infinity();
   std::size_t bend_sample = 0;
   int bend_joint = -1;
   for (std::size_t p = 0; p < 3; ++p) {
     const RowSample& sample = samples[p];
-    const double per_root = 1.5 * at.jerk_share / std::sqrt(sample.bar);
     for (int j = 0; j < limits.count; ++j) {
-      const double largest =
-          (limits.jerk[j] * per_root + std::abs(sample.at->d3[j]) * sample.max_b +
-           1.5 * std::abs(sample.at->d2[j]) * sample.max_slope) /
-          std::max(0.5 * std::abs(sample.at->d1[j]), kTiniest);
+      const JerkLine& line = lines[p][j] = line_at(limits, sample, j, at.jerk_share);
+      const double largest = (line.limit + rest_of(line, sample, j)) /
+                             std::max(0.5 * std::abs(sample.at->d1[j]), kTiniest);
       if (largest >= max_bend) continue;
       max_bend = largest;
       bend_sample = p;
@@ -103,22 +103,47 @@ void JerkRows::add_jerk(const FeedLimits& limits, const JerkCell& at) noexcept {
   }
   for (std::size_t p = 0; p < 3; ++p) {
     const RowSample& sample = samples[p];
-    const double root = std::sqrt(sample.bar);
     for (int j = 0; j < limits.count; ++j) {
-      const double jerk = limits.jerk[j] * at.jerk_share;
+      const JerkLine& line = lines[p][j];
       const double d1 = sample.at->d1[j], d2 = sample.at->d2[j], d3 = sample.at->d3[j];
-      const double limit = 1.5 * jerk / root, per_b = jerk / (2 * sample.bar * root);
-      const double largest = (std::abs(d3) + per_b) * sample.max_b +
-                             1.5 * std::abs(d2) * sample.max_slope + 0.5 * std::abs(d1) * max_bend;
-      if (largest <= limit && (p != bend_sample || j != bend_joint)) continue;
+      const double largest =
+          rest_of(line, sample, j) + line.per_b * sample.max_b + 0.5 * std::abs(d1) * max_bend;
+      if (largest <= line.limit && (p != bend_sample || j != bend_joint)) continue;
       JerkCoefficients value{}, rest{};
       for (std::size_t t = 0; t < 3; ++t) {
         value[t] = d3 * sample.b[t] + 1.5 * d2 * sample.slope[t] + 0.5 * d1 * sample.bend[t];
-        rest[t] = per_b * sample.b[t];
+        rest[t] = line.per_accel * (0.5 * d1 * sample.slope[t] + d2 * sample.b[t]) +
+                  line.per_b * sample.b[t];
       }
-      add_pair(value, rest, limit);
+      add_pair(value, rest, line.limit);
     }
   }
+}
+
+/// Largest value of what bears on a jerk row beside b'' and the tangent's b.
+double JerkRows::rest_of(const JerkLine& line, const RowSample& sample, int j) noexcept {
+  const double d1 = std::abs(sample.at->d1[j]), d2 = std::abs(sample.at->d2[j]);
+  const double accel = 0.5 * d1 * sample.max_slope + d2 * sample.max_b;
+  return std::abs(sample.at->d3[j]) * sample.max_b + 1.5 * d2 * sample.max_slope +
+         std::abs(line.per_accel) * accel;
+}
+
+/// Of |l₃| + 3 Ω₁ |l₂| b^-½ + Ω₂ |q'| <= J b^-½ the tangent about b and b' of the linearisation,
+/// where both are known; else J less what A and V take of it.
+JerkRows::JerkLine JerkRows::line_at(const FeedLimits& limits, const RowSample& sample, int j,
+                                     double share) noexcept {
+  const double root = std::sqrt(sample.bar);
+  const double per_b = 1 / (2 * sample.bar * root);
+  if (std::isnan(sample.bar_slope)) {
+    const double jerk = share * limits.jerk[j];
+    return {0, jerk * per_b, 1.5 * jerk / root};
+  }
+  const double d1 = sample.at->d1[j], d2 = sample.at->d2[j];
+  const double accel = 0.5 * d1 * sample.bar_slope + d2 * sample.bar;
+  const double jerk = share * limits.full_jerk[j], slope = 3 * limits.slope;
+  return {
+      std::copysign(slope / root, accel), std::max(0.0, jerk - slope * std::abs(accel)) * per_b,
+      1.5 * jerk / root - limits.curvature * std::abs(d1) - 0.5 * slope * std::abs(accel) / root};
 }
 
 void JerkRows::find(const FeedLimits& limits, const JerkCell& at) noexcept {

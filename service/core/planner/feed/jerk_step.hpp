@@ -28,6 +28,7 @@ struct JerkProblem {
   const double* bar_middles = nullptr;  ///< the same in the middle of every cell
   const double* accel_share = nullptr;  ///< of A, at the boundaries
   const double* jerk_share = nullptr;   ///< of J, in the cells
+  const double* bar_slopes = nullptr;   ///< b' at the boundaries beside bar_knots; NaN: not known
 };
 
 /// Minimises the time of a window by a primal-dual interior point with Mehrotra's predictor and

@@ -10,13 +10,13 @@ namespace meridian {
 namespace {
 
 constexpr double kCell_s = 0.004;  // at full speed, next to rest and as long as they are few
-constexpr double kMinLegCells = CellGrid::kMin, kMaxFeedCells = 240;  // cells away from rest
+constexpr double kMinLegCells = CellGrid::kMin, kMaxFeedCells = 360;  // cells away from rest
 constexpr double kCellGrowth = 1.25;                                  // of cells, away from rest
 constexpr std::size_t kMaxGrowing = 64;                               // of them, next to a rest
 constexpr std::size_t kEnds = 512;
 constexpr int kKeptCells = 256;   // at a time: a window, and what stands before and behind it
 constexpr int kCommitCells = 80;  // of a window: all cells are there, so fewer windows do
-constexpr int kMaxRounds = 40;    // of the solver in a window: what needs more finds no plan
+constexpr int kMaxRounds = 80;    // of the solver in a window: what needs more finds no plan
 
 FeedSettings leg_settings(const MachineModel& model) noexcept {
   FeedSettings settings = feed_settings(model);
@@ -25,6 +25,18 @@ FeedSettings leg_settings(const MachineModel& model) noexcept {
   settings.cells.kept_cells = kKeptCells;
   settings.max_rounds = kMaxRounds;
   return settings;
+}
+
+/// About the time of the fastest motion over `length` inside `limits` that leaves the rate filter
+/// its room where acceleration and velocity are: while acceleration grows half of what its peak
+/// asks for.
+double duration_with_room(double length, const PathLimits& limits) noexcept {
+  const Profile fastest = rest_to_rest(length, limits);
+  const double v = fastest.peak_velocity(), a = fastest.peak_acceleration();
+  const double acceleration = limits.acceleration - kRateSlope_per_s * v;
+  const double jerk = limits.jerk - 0.5 * (3 * kRateSlope_per_s * a + kRateCurvature_per_s2 * v);
+  if (!(acceleration > 0) || !(jerk > 0)) return 0;
+  return rest_to_rest(length, {limits.velocity, acceleration, jerk}).duration();
 }
 
 }  // namespace
@@ -144,8 +156,7 @@ double min_leg_time(const Leg& leg, std::span<const JointCell> cells,
     easiest.jerk = std::max(easiest.jerk, find_jerk({&cell, 1}, caps, 0, 0));
   }
   easiest.velocity = leg.path.length / at_speed;
-  const Profile profile = rest_to_rest_with_reserve(leg.path.length, easiest);
-  return profile.jerk > 0 ? std::max(profile.duration(), at_speed) : at_speed;
+  return std::max(duration_with_room(leg.path.length, easiest), at_speed);
 }
 
 }  // namespace meridian

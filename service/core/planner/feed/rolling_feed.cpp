@@ -25,18 +25,10 @@ constexpr double kBesideSlow = 0.25;  // of u̇² at that bound, beside a slow c
 constexpr int kHistory = 240;         // cells kept behind the next one, at most: three windows
 constexpr int kSpare = 8;             // cells of the store
 constexpr double kOldShare = 0.6;     // of the bound: an old plan above it is worth linearising at
+constexpr double kMinBar = 1e-6;      // of the largest, or of the one before
+constexpr int kTrials = 2;            // results far from it that tighten no cell
+constexpr double kNearBar = 0.05;     // of u̇²: the tangent there is as good as that at the plan
 constexpr double kFeedSlack = 1.002;  // on u̇², beside CellSettings::feed_share
-
-}  // namespace
-
-/// One try at a window.
-struct RollingFeed::Attempt {
-  bool is_around_old;  ///< linearise at the old plan where it is fast
-  double softness;     ///< share of the speed beside rests
-  int shorter;         ///< cells that the window is shortened by
-};
-
-namespace {
 
 /// u̇² beside a rest, of what the cells within reach keep up and what the cell at the rest does, as
 /// far as others let it. A slow span among them bounds nothing but itself: at its speed the cell at
@@ -50,6 +42,14 @@ int window_of(const FeedSettings& settings) noexcept {
 }
 
 }  // namespace
+
+/// One try at a window.
+struct RollingFeed::Attempt {
+  bool is_around_old;  ///< linearise at the old plan where it is fast
+  double softness;     ///< share of the speed beside rests
+  int shorter;         ///< cells that the window is shortened by
+  RestRoom room = RestRoom::kLargest;
+};
 
 FeedSettings feed_settings(const MachineModel& model) noexcept {
   const RateLimits rates = rate_limits(model.override_ramp_s);
@@ -68,8 +68,9 @@ RollingFeed::RollingFeed(const MachineModel& model, const FeedSettings& settings
   settings_.window_cells = window_of(settings);
   history_ = std::min(kHistory, settings.cells.kept_cells - settings_.window_cells - kSpare);
   settings_.commit_cells = std::clamp(settings.commit_cells, 1, settings_.window_cells - 10);
-  for (auto* v : {&backward_, &bound_, &bar_knots_, &bar_middles_, &accel_share_, &jerk_share_,
-                  &old_.b, &old_.slope, &new_.b, &new_.slope, &best_.b, &best_.slope}) {
+  for (auto* v :
+       {&backward_, &bound_, &bar_knots_, &bar_middles_, &bar_slopes_, &accel_share_, &jerk_share_,
+        &old_.b, &old_.slope, &new_.b, &new_.slope, &best_.b, &best_.slope}) {
     v->resize(static_cast<std::size_t>(settings_.window_cells) + 2);
   }
 }
@@ -82,8 +83,6 @@ void RollingFeed::begin(const JointVector& joints, int branch, double tool_lengt
   old_.first = old_.end = 0;
   window_ = {};
 }
-
-PathFault RollingFeed::finish() noexcept { return grid_.finish(); }
 
 std::int64_t RollingFeed::window_end() const noexcept {
   const std::int64_t end = next_ + settings_.window_cells;
@@ -128,7 +127,8 @@ bool RollingFeed::plan_window() noexcept {
       {true, 1, 0},    {false, 1, 0},    {true, 0.3, 0},   {true, 1, 7},     {false, 0.3, 13},
       {true, 0.3, 19}, {false, 0.05, 0}, {true, 0.05, 11}, {false, 0.01, 5},
   };
-  return std::any_of(std::begin(kLadder), std::end(kLadder),
+  return attempt({true, 1, 0, RestRoom::kOwn}) ||
+         std::any_of(std::begin(kLadder), std::end(kLadder),
                      [this](const Attempt& how) { return attempt(how); });
 }
 
@@ -142,13 +142,15 @@ bool RollingFeed::attempt(const Attempt& how) noexcept {
   }
   if (end - first < kMinCells) return false;
   if (is_at_rest_) {
-    start_ = find_rest_cell(planned_, grid_[next_], true, how.softness * start_b(first, end));
+    const double max_b = how.softness * start_b(first, end);
+    start_ = find_rest_cell(planned_, grid_[next_], true, max_b, how.room);
     state_ = start_.state;
   }
   pass_twice(first, end, state_.b);
   new_.first = first;
   new_.end = end;
-  new_.stop = find_rest_cell(planned_, grid_[end - 1], false, how.softness * stop_b(first, end));
+  const double max_b = how.softness * stop_b(first, end);
+  new_.stop = find_rest_cell(planned_, grid_[end - 1], false, max_b, how.room);
   choose_bar(how);
   return refine();
 }
@@ -180,7 +182,8 @@ void RollingFeed::choose_bar(const Attempt& how) noexcept {
   const int cells = new_.cells();
   double largest = 0;
   for (int k = 0; k <= cells; ++k) largest = std::max(largest, bound_[k]);
-  for (int k = 0; k <= cells; ++k) bar_knots_[k] = std::max(bound_[k], 1e-6 * largest);
+  for (int k = 0; k <= cells; ++k) bar_knots_[k] = std::max(bound_[k], kMinBar * largest);
+  std::fill_n(bar_slopes_.begin(), cells + 1, JerkCell::kUnknown);
   if (how.is_around_old && !is_at_rest_) {
     // Up to where the old plan turns to its rest, which is no guide: there it falls behind the
     // share of the bound that it has before.
@@ -190,14 +193,17 @@ void RollingFeed::choose_bar(const Attempt& how) noexcept {
     for (int k = 0; k <= last / 2; ++k) share += old_.b[k + skipped] / bar_knots_[k];
     share *= kOldShare / (last / 2 + 1);
     while (last >= 0 && !(old_.b[last + skipped] > share * bar_knots_[last])) --last;
-    for (int k = 0; k <= last; ++k) bar_knots_[k] = old_.b[k + skipped];
+    for (int k = 0; k <= last; ++k) {
+      bar_knots_[k] = old_.b[k + skipped];
+      bar_slopes_[k] = old_.slope[k + skipped];
+    }
   }
   for (int k = 0; k < cells; ++k) bar_middles_[k] = 0.5 * (bar_knots_[k] + bar_knots_[k + 1]);
 }
 
 bool RollingFeed::refine() noexcept {
   const int cells = new_.cells();
-  int good = 0;
+  int good = 0, trials = 0;
   for (int round = 0; round < kTightenings + settings_.refinements; ++round) {
     for (int k = 0; k <= cells; ++k) {
       const double funnel = 1 - kFunnel * std::min(1.0, 1.0 * k / settings_.window_cells);
@@ -212,26 +218,49 @@ bool RollingFeed::refine() noexcept {
                                           bar_knots_.data(),
                                           bar_middles_.data(),
                                           accel_share_.data(),
-                                          jerk_share_.data()});
+                                          jerk_share_.data(),
+                                          bar_slopes_.data()});
     count_.rounds += solver_.rounds();
     window_rounds_ += solver_.rounds();
     count_.max_rounds = std::max(count_.max_rounds, window_rounds_);
     if (!is_solved) break;
     take_result();
-    if (!check_and_tighten(round < kTightenings)) {
-      ++count_.tightened;
+    // Far from a tangent a result may break a limit, and no cell is at fault; without one it is.
+    const bool is_far = !is_near_bar(), has_tangent = !std::isnan(bar_slopes_[0]);
+    const bool is_trial = is_far && has_tangent && good == 0 && ++trials <= kTrials;
+    const bool is_good = check_and_tighten(round < kTightenings && !is_trial);
+    if (is_far && (is_good || has_tangent)) linearise_at_result();
+    if (!is_good) {
+      if (!is_trial) ++count_.tightened;
       continue;
     }
     std::swap(best_.b, new_.b);
     std::swap(best_.slope, new_.slope);
-    if (++good == settings_.refinements) break;
-    for (int k = 0; k <= cells; ++k) bar_knots_[k] = best_.b[k];
-    for (int k = 0; k < cells; ++k) bar_middles_[k] = solver_.middle(k);
+    if (++good == settings_.refinements || !is_far) break;
   }
   if (good == 0) return false;
   std::swap(best_.b, new_.b);
   std::swap(best_.slope, new_.slope);
   return true;
+}
+
+/// Whether what stands of the result is where jerk was linearised: again would gain nothing.
+bool RollingFeed::is_near_bar() const noexcept {
+  const int near = std::min(new_.cells(), settings_.commit_cells + settings_.commit_cells / 2);
+  for (int k = 0; k < near; ++k) {
+    const bool is_near = std::abs(new_.b[k] - bar_knots_[k]) <= kNearBar * bar_knots_[k];
+    if (!is_near || std::isnan(bar_slopes_[k])) return false;
+  }
+  return true;
+}
+
+void RollingFeed::linearise_at_result() noexcept {
+  const int cells = new_.cells();
+  for (int k = 0; k <= cells; ++k) {
+    bar_knots_[k] = std::max(new_.b[k], kMinBar * bar_knots_[k]);
+    bar_slopes_[k] = new_.slope[k];
+  }
+  for (int k = 0; k < cells; ++k) bar_middles_[k] = solver_.middle(k);
 }
 
 void RollingFeed::take_result() noexcept {

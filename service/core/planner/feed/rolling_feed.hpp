@@ -22,9 +22,9 @@ struct FeedSettings {
   int commit_cells = 40;   ///< of them kept, and on to twice as many while they yield
   double commit_s = 0.06;  ///< less motion than this
   int max_rounds = 240;    ///< of the solver per window; then the plan before it stands
-  /// Convex programmes per window, each around the result of the last. The plan of the window
-  /// before is a good place to linearise at: a second one gains little and doubles the work.
-  int refinements = 1;
+  /// Convex programmes per window at most, each around the result of the last. There is a second
+  /// one where the first leads away from the plan of the window before, around which it was made.
+  int refinements = 2;
   /// Share of the windows that are declared to have no plan: for tests of what then happens.
   double failing_share = 0;
 };
@@ -78,7 +78,7 @@ class RollingFeed {
     return push(on_branch);
   }
   /// The path ends with the last span, at rest.
-  [[nodiscard]] PathFault finish() noexcept;
+  [[nodiscard]] PathFault finish() noexcept { return grid_.finish(); }
 
   /// Behind a fault: the path ends at `x` of `span`, the `number`th, at rest; or behind what was
   /// planned, and behind `least` cells, where that is farther.
@@ -135,6 +135,8 @@ class RollingFeed {
   [[nodiscard]] std::size_t find_tail(std::int64_t first, int& kept) const noexcept;
   void commit(bool is_new) noexcept;
   void commit_crawl() noexcept;
+  [[nodiscard]] bool is_near_bar() const noexcept;
+  void linearise_at_result() noexcept;
   [[nodiscard]] bool is_failing() const noexcept;
   [[nodiscard]] std::int64_t window_end() const noexcept;
 
@@ -150,7 +152,8 @@ class RollingFeed {
   FeedState state_;  ///< at the boundary before next_, where not at rest
   RestCell start_;   ///< of the window being planned
   Plan old_, new_, best_;
-  std::vector<double> backward_, bound_, bar_knots_, bar_middles_, accel_share_, jerk_share_;
+  std::vector<double> backward_, bound_, bar_knots_, bar_middles_, bar_slopes_, accel_share_,
+      jerk_share_;
   FeedPieces pieces_;  ///< of the window, the tail behind what is committed
   FeedWindow window_;
   FeedCount count_;

@@ -13,6 +13,8 @@ TEST(FeedLimits, LeaveTheRateFilterItsShareOfTheJerk) {
   const FeedLimits limits = make_feed_limits(model, {2, 5});
   ASSERT_EQ(limits.count, 5);
   EXPECT_EQ(limits.slope, 2);
+  EXPECT_EQ(limits.curvature, 5);
+  EXPECT_EQ(limits.full_jerk[0], 60000);
   EXPECT_EQ(limits.velocity[0], 300);
   EXPECT_EQ(limits.acceleration[0], 3000);
   EXPECT_EQ(limits.jerk[0], 60000 - 3 * 2 * 3000 - 5 * 300);
@@ -49,6 +51,7 @@ TEST(FeedLimits, AreScaledOneByOne) {
   EXPECT_EQ(limits.velocity[4], 0.5 * bench_machine().joints[4].limits.velocity);
   EXPECT_EQ(limits.acceleration[4], 0.25 * bench_machine().joints[4].limits.acceleration);
   EXPECT_EQ(limits.jerk[0], 0.125 * 48000);
+  EXPECT_EQ(limits.full_jerk[0], 0.125 * 60000);
   EXPECT_EQ(limits.slope, 1);
   EXPECT_EQ(limits.count, 5);
 }

@@ -56,6 +56,21 @@ TEST(FeedRest, CountsTheRateFilterAsAcceleration) {
   EXPECT_GT(used, 92 * 0.97);
 }
 
+TEST(FeedRest, LeavesTheRateItsOwnRoomOrTheLargest) {
+  FeedLimits limits = even_limits(1, 1e9, 1e9, 6000);
+  limits.slope = 10;
+  limits.curvature = 100;
+  limits.jerk[0] = 4000;
+  const FeedCell cell = even_cell(0.001);
+  const RestCell own = find_rest_cell(limits, cell, true, 1e9);
+  const double a = own.jerk * own.duration, v = 0.5 * a * own.duration;
+  EXPECT_LT(own.jerk + 3 * 10 * a + 100 * v, 0.92 * 6000);
+  EXPECT_GT(own.jerk + 3 * 10 * a + 100 * v, 0.92 * 6000 * 0.97);
+  const RestCell largest = find_rest_cell(limits, cell, true, 1e9, RestRoom::kLargest);
+  EXPECT_LE(largest.jerk, 0.92 * 4000);
+  EXPECT_LE(largest.jerk, own.jerk);
+}
+
 TEST(FeedRest, ReachesNoMoreThanFourFifthsOfWhatItIsAllowed) {
   const RestCell rest = find_rest_cell(even_limits(1, 1e9, 1e9, 1e9), even_cell(0.5), true, 50);
   EXPECT_LE(rest.state.b, 40);

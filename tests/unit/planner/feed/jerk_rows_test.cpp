@@ -29,10 +29,12 @@ Drawn draw(unsigned seed) {
   Drawn out;
   out.limits.count = kJoints;
   out.limits.slope = real(0, 1);
+  out.limits.curvature = real(0, 4);
   out.cell.h = real(0.2, 0.8);
   for (int j = 0; j < kJoints; ++j) {
     out.limits.acceleration[j] = real(20, 80);
     out.limits.jerk[j] = real(200, 2000);
+    out.limits.full_jerk[j] = out.limits.jerk[j] + real(0, 400);
   }
   for (CellSample& sample : out.cell.at) {
     for (int j = 0; j < kJoints; ++j) {
@@ -52,11 +54,38 @@ Drawn draw(unsigned seed) {
   out.at.jerk_share = real(0.7, 1);
   out.at.max_slope = real(60, 400);
   out.at.max_end = real(60, 400);
+  if (seed % 2 == 0) out.at.bar_slope = {real(-60, 60), real(-60, 60), real(-60, 60)};
   return out;
 }
 
 double product(const JerkCoefficients& a, const JerkCoefficients& c) {
   return a[0] * c[0] + a[1] * c[1] + a[2] * c[2];
+}
+
+/// fixed + per_b b + per_slope b'
+struct JerkTangent {
+  double fixed = 0, per_b = 0, per_slope = 0;
+};
+
+/// Of what joint `j` may have of l₃ at sample `p`, the tangent about b and b' there: what a and v
+/// leave of the jerk where b' is known, else what A and V leave of it.
+JerkTangent tangent_of(const Drawn& drawn, int j, std::size_t p) {
+  const JerkCell& at = drawn.at;
+  const CellSample& sample = drawn.cell.at[p * 4];
+  const double bar = at.bar[p], slope = at.bar_slope[p], root = std::sqrt(bar);
+  double jerk = drawn.limits.jerk[j] * at.jerk_share, per_slope = 0, filter_per_b = 0;
+  double fixed = 1 / root;
+  if (!std::isnan(slope)) {
+    const double accel = 0.5 * sample.d1[j] * slope + sample.d2[j] * bar;
+    const double sign = accel < 0 ? -1 : 1, filter = 3 * drawn.limits.slope;
+    jerk = drawn.limits.full_jerk[j] * at.jerk_share - filter * std::abs(accel);
+    per_slope = -filter * sign * 0.5 * sample.d1[j] / root;
+    filter_per_b = -filter * sign * sample.d2[j] / root;
+  }
+  fixed *= jerk;
+  if (!std::isnan(slope)) fixed -= drawn.limits.curvature * std::abs(sample.d1[j]);
+  const double per_b = -jerk / (2 * bar * root) + filter_per_b;
+  return {fixed - per_b * bar - (std::isnan(slope) ? 0 : per_slope * slope), per_b, per_slope};
 }
 
 /// Every row there could be, by (8.5) and (8.6): |value| + rest <= limit of each joint at each
@@ -84,17 +113,17 @@ std::vector<JerkRow> all_rows(const Drawn& drawn) {
     if (!at.is_first) add(1, value, rest, limit), add(-1, value, rest, limit);
     for (std::size_t p = 0; p < 3; ++p) {
       const CellSample& sample = drawn.cell.at[p * 4];
-      const double x = 0.5 * h * static_cast<double>(p), bar = at.bar[p];
-      const double jerk = drawn.limits.jerk[j] * at.jerk_share;
+      const double x = 0.5 * h * static_cast<double>(p);
+      const JerkTangent tangent = tangent_of(drawn, j, p);
       for (std::size_t t = 0; t < 3; ++t) {
         const double bend = (at.end[t] - at.slope[t]) / h;
         const double slope = at.slope[t] + bend * x;
         const double b = at.b[t] + at.slope[t] * x + 0.5 * bend * x * x;
         value[t] = sample.d3[j] * b + 1.5 * sample.d2[j] * slope + 0.5 * sample.d1[j] * bend;
-        rest[t] = jerk / (2 * bar * std::sqrt(bar)) * b;  // the tangent of 1/√b
+        rest[t] = -tangent.per_b * b - tangent.per_slope * slope;
       }
-      add(1, value, rest, 1.5 * jerk / std::sqrt(bar));
-      add(-1, value, rest, 1.5 * jerk / std::sqrt(bar));
+      add(1, value, rest, tangent.fixed);
+      add(-1, value, rest, tangent.fixed);
     }
   }
   if (!at.is_first) out.push_back({at.b, at.max_b[0]});

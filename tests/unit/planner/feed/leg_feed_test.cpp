@@ -168,9 +168,16 @@ TEST(LegFeed, KnowsATimeThatNoMotionFallsBelow) {
   // 60 mm at the feed, 40 mm where the joint goes five times as far.
   const std::array cells{cell_of(0, 60, 1, 0.01), cell_of(60, 100, 5, 0.01)};
   const double at_speed = 60 / (20 * (1 - 1e-7)) + 40.0 / 6;
-  const Profile easiest = rest_to_rest_with_reserve(100, {100 / at_speed, 1000, 20000});
-  EXPECT_NEAR(min_leg_time(leg, cells, caps), easiest.duration(), 1e-9);
-  EXPECT_GT(easiest.duration(), at_speed);
+  const PathLimits limits{100 / at_speed, 1000, 20000};
+  const Profile fastest = rest_to_rest(100, limits);
+  const double v = fastest.peak_velocity(), a = fastest.peak_acceleration();
+  const double room = 3 * kRateSlope_per_s * a + kRateCurvature_per_s2 * v;
+  const Profile easiest = rest_to_rest(
+      100, {limits.velocity, limits.acceleration - kRateSlope_per_s * v, limits.jerk - 0.5 * room});
+  const double smallest = min_leg_time(leg, cells, caps);
+  EXPECT_NEAR(smallest, easiest.duration(), 1e-9);
+  EXPECT_GT(smallest, fastest.duration());
+  EXPECT_LT(smallest, rest_to_rest_with_reserve(100, limits).duration());
   caps.jerk[0] = 1e-3;  // no profile: velocity alone
   EXPECT_GE(min_leg_time(leg, cells, caps), at_speed);
 }

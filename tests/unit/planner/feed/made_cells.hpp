@@ -51,7 +51,7 @@ inline FeedLimits even_limits(int count, double velocity, double acceleration, d
   for (int i = 0; i < count; ++i) {
     limits.velocity[i] = velocity;
     limits.acceleration[i] = acceleration;
-    limits.jerk[i] = jerk;
+    limits.jerk[i] = limits.full_jerk[i] = jerk;
   }
   return limits;
 }
