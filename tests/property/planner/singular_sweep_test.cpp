@@ -231,6 +231,14 @@ TEST_F(SingularSeed, OntoBothTheJointsRestInsideTheTolerance) {
   expect_planned(BothPass(robot_, 8).program(Pass::kOnto, 0.9), Transition::kExactStop);
 }
 
+/// Off the wrist's singular place windows found no plan where the roll comes to rest, and stopped.
+TEST_F(SingularSeed, OffTheWristThePlanGoesOnWhereTheRollComesToRest) {
+  const Outcome out =
+      planned(robot_, WristPass(robot_, 1).program(Pass::kOff, 0), Transition::kSmooth);
+  EXPECT_EQ(out.trace.last.status, PlanStatus::kOk);
+  EXPECT_LT(out.time_s, 1.6);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Of, SingularSweep,
     testing::Values(Sweep{"WristSmooth", "robot-6r", At::kWrist, Transition::kSmooth},

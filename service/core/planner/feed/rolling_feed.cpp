@@ -24,10 +24,7 @@ constexpr double kSlowShare = 1e-3;  // of u̇² at the rest's own bound: a cell
 constexpr double kBesideSlow = 0.25;  // of u̇² at that bound, beside a slow cell
 constexpr int kHistory = 240;         // cells kept behind the next one, at most: three windows
 constexpr int kSpare = 8;             // cells of the store
-constexpr double kOldShare = 0.6;     // of the bound: an old plan above it is worth linearising at
-constexpr double kMinBar = 1e-6;      // of the largest, or of the one before
 constexpr int kTrials = 2;            // results far from it that tighten no cell
-constexpr double kNearBar = 0.05;     // of u̇²: the tangent there is as good as that at the plan
 constexpr double kFeedSlack = 1.002;  // on u̇², beside CellSettings::feed_share
 
 /// u̇² beside a rest, of what the cells within reach keep up and what the cell at the rest does, as
@@ -42,14 +39,6 @@ int window_of(const FeedSettings& settings) noexcept {
 }
 
 }  // namespace
-
-/// One try at a window.
-struct RollingFeed::Attempt {
-  bool is_around_old;  ///< linearise at the old plan where it is fast
-  double softness;     ///< share of the speed beside rests
-  int shorter;         ///< cells that the window is shortened by
-  RestRoom room = RestRoom::kLargest;
-};
 
 FeedSettings feed_settings(const MachineModel& model) noexcept {
   const RateLimits rates = rate_limits(model.override_ramp_s);
@@ -123,9 +112,14 @@ bool RollingFeed::try_plan() noexcept {
 }
 
 bool RollingFeed::plan_window() noexcept {
+  // A steady one behind a bound without jerk: the old plan may have slowed down for a place at
+  // which that bound is so far above what jerk allows that no tangent there lets the new one pass.
   static constexpr Attempt kLadder[] = {
-      {true, 1, 0},    {false, 1, 0},    {true, 0.3, 0},   {true, 1, 7},     {false, 0.3, 13},
-      {true, 0.3, 19}, {false, 0.05, 0}, {true, 0.05, 11}, {false, 0.01, 5},
+      {true, 1, 0},     {true, 1, 0, RestRoom::kLargest, true},
+      {false, 1, 0},    {true, 0.3, 0},
+      {true, 1, 7},     {false, 0.3, 13},
+      {true, 0.3, 19},  {false, 0.05, 0},
+      {true, 0.05, 11}, {false, 0.01, 5},
   };
   return attempt({true, 1, 0, RestRoom::kOwn}) ||
          std::any_of(std::begin(kLadder), std::end(kLadder),
@@ -178,29 +172,6 @@ double RollingFeed::stop_b(std::int64_t first, std::int64_t end) const noexcept 
   return beside_slow(steady, std::min(bound_[last], steady_b(grid_, planned_, end - 1, end)));
 }
 
-void RollingFeed::choose_bar(const Attempt& how) noexcept {
-  const int cells = new_.cells();
-  double largest = 0;
-  for (int k = 0; k <= cells; ++k) largest = std::max(largest, bound_[k]);
-  for (int k = 0; k <= cells; ++k) bar_knots_[k] = std::max(bound_[k], kMinBar * largest);
-  std::fill_n(bar_slopes_.begin(), cells + 1, JerkCell::kUnknown);
-  if (how.is_around_old && !is_at_rest_) {
-    // Up to where the old plan turns to its rest, which is no guide: there it falls behind the
-    // share of the bound that it has before.
-    const auto skipped = new_.first - old_.first;
-    int last = std::min(cells, static_cast<int>(old_.cells() - skipped));
-    double share = 0;
-    for (int k = 0; k <= last / 2; ++k) share += old_.b[k + skipped] / bar_knots_[k];
-    share *= kOldShare / (last / 2 + 1);
-    while (last >= 0 && !(old_.b[last + skipped] > share * bar_knots_[last])) --last;
-    for (int k = 0; k <= last; ++k) {
-      bar_knots_[k] = old_.b[k + skipped];
-      bar_slopes_[k] = old_.slope[k + skipped];
-    }
-  }
-  for (int k = 0; k < cells; ++k) bar_middles_[k] = 0.5 * (bar_knots_[k] + bar_knots_[k + 1]);
-}
-
 bool RollingFeed::refine() noexcept {
   const int cells = new_.cells();
   int good = 0, trials = 0;
@@ -242,25 +213,6 @@ bool RollingFeed::refine() noexcept {
   std::swap(best_.b, new_.b);
   std::swap(best_.slope, new_.slope);
   return true;
-}
-
-/// Whether what stands of the result is where jerk was linearised: again would gain nothing.
-bool RollingFeed::is_near_bar() const noexcept {
-  const int near = std::min(new_.cells(), settings_.commit_cells + settings_.commit_cells / 2);
-  for (int k = 0; k < near; ++k) {
-    const bool is_near = std::abs(new_.b[k] - bar_knots_[k]) <= kNearBar * bar_knots_[k];
-    if (!is_near || std::isnan(bar_slopes_[k])) return false;
-  }
-  return true;
-}
-
-void RollingFeed::linearise_at_result() noexcept {
-  const int cells = new_.cells();
-  for (int k = 0; k <= cells; ++k) {
-    bar_knots_[k] = std::max(new_.b[k], kMinBar * bar_knots_[k]);
-    bar_slopes_[k] = new_.slope[k];
-  }
-  for (int k = 0; k < cells; ++k) bar_middles_[k] = solver_.middle(k);
 }
 
 void RollingFeed::take_result() noexcept {

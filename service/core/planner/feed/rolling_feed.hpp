@@ -117,7 +117,14 @@ class RollingFeed {
     RestCell stop;
     [[nodiscard]] int cells() const noexcept { return static_cast<int>(end - first) - 1; }
   };
-  struct Attempt;
+  /// One try at a window.
+  struct Attempt {
+    bool is_around_old;  ///< linearise at the old plan where it is fast
+    double softness;     ///< share of the speed beside rests
+    int shorter;         ///< cells that the window is shortened by
+    RestRoom room = RestRoom::kLargest;
+    bool is_steady = false;  ///< elsewhere at no more than a steady speed there may be
+  };
 
   [[nodiscard]] bool plan_window() noexcept;
   [[nodiscard]] bool attempt(const Attempt& how) noexcept;

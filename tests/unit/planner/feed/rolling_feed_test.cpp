@@ -159,6 +159,47 @@ TEST(RollingFeed, ASlowCellNearARestDoesNotMakeTheMotionCrawl) {
   }
 }
 
+/// Straight on, and beside it a swing in two spans of 75 short cells, at whose end the swinging
+/// joint rests in two derivatives by u but not in the third.
+void add_swing(Rolled& one) {
+  constexpr double kLength = 0.5, kBend = 3, kThird = 4 * kBend / kLength;
+  constexpr double kRate = 2 * kBend * kLength / 3;  // of y in the middle; y'' = 4 bend t (1 - t)
+  JointSpan span;
+  const auto add = [&](double length, int cells) {
+    span.band.length = length;
+    FeedSpan out = make_feed_span(span, one.model.tool_length_mm);
+    out.feed_mm_per_s = 50;
+    out.cells = cells;
+    one.spans.push_back(out);
+    span.band.c[0][0] += length;
+  };
+  span.band.c = {
+      {{30, 1}, {0, 0, 0, kThird / 6, -kThird / (12 * kLength)}, {-20}, {0.3}, {0.3}, {1}}};
+  one.start = solve(one.model, one.model.tool_length_mm, pose_on(span.band.c, 0.0), 0, {}).q;
+  add(kLength, 75);
+  span.band.c[1] = {kRate * kLength / 2, kRate, 0, -kThird / 6, kThird / (12 * kLength)};
+  add(kLength, 75);
+  span.band.c[1] = {kRate * kLength};
+  add(12, 54);
+}
+
+/// Beyond the old plan a tangent at a bound without jerk asks for less than the jerk there.
+TEST(RollingFeed, GoesOnWhereThePlanBeforeSlowedDownForJerk) {
+  MachineModel model = bench_machine();
+  model.joints[1].limits.acceleration = 8.55;
+  model.joints[1].limits.jerk = 62.7;
+  FeedSettings settings;
+  settings.reserve = {1.2, 0};
+  Rolled one(settings, model);
+  add_swing(one);
+  one.run();
+  const auto pieces = one.pieces();
+  expect_joined(pieces);
+  EXPECT_LE(one.use(pieces).worst(), kLimit);
+  EXPECT_LT(one.duration(), 3.4);
+  EXPECT_EQ(one.feed.count().kept + one.feed.count().crawls, 0);
+}
+
 TEST(RollingFeed, SpendsNoMoreRoundsOfTheSolverThanItMay) {
   FeedSettings settings = without_reserve();
   Rolled plain(settings);

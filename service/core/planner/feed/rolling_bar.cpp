@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "service/core/planner/feed/rolling_feed.hpp"
+
+/// Where the jerk of a window is linearised.
+namespace meridian {
+namespace {
+
+constexpr double kOldShare = 0.6;  // of the bound: an old plan above it is worth linearising at
+constexpr double kMinBar = 1e-6;   // of the largest, or of the one before
+constexpr double kNearBar = 0.05;  // of u̇²: the tangent there is as good as that at the plan
+
+}  // namespace
+
+void RollingFeed::choose_bar(const Attempt& how) noexcept {
+  const int cells = new_.cells();
+  double largest = 0;
+  for (int k = 0; k <= cells; ++k) largest = std::max(largest, bound_[k]);
+  for (int k = 0; k <= cells; ++k) {
+    const std::int64_t cell = new_.first + k;
+    const double steady = how.is_steady ? steady_b(grid_, planned_, cell, cell + 1) : bound_[k];
+    bar_knots_[k] = std::max(std::min(bound_[k], steady), kMinBar * largest);
+  }
+  std::fill_n(bar_slopes_.begin(), cells + 1, JerkCell::kUnknown);
+  if (how.is_around_old && !is_at_rest_) {
+    // Up to where the old plan turns to its rest, which is no guide: there it falls behind the
+    // share of the bound that it has before.
+    const auto skipped = new_.first - old_.first;
+    int last = std::min(cells, static_cast<int>(old_.cells() - skipped));
+    double share = 0;
+    for (int k = 0; k <= last / 2; ++k) share += old_.b[k + skipped] / bar_knots_[k];
+    share *= kOldShare / (last / 2 + 1);
+    while (last >= 0 && !(old_.b[last + skipped] > share * bar_knots_[last])) --last;
+    for (int k = 0; k <= last; ++k) {
+      bar_knots_[k] = old_.b[k + skipped];
+      bar_slopes_[k] = old_.slope[k + skipped];
+    }
+  }
+  for (int k = 0; k < cells; ++k) bar_middles_[k] = 0.5 * (bar_knots_[k] + bar_knots_[k + 1]);
+}
+
+/// Whether what stands of the result is where jerk was linearised: again would gain nothing.
+bool RollingFeed::is_near_bar() const noexcept {
+  const int near = std::min(new_.cells(), settings_.commit_cells + settings_.commit_cells / 2);
+  for (int k = 0; k < near; ++k) {
+    const bool is_near = std::abs(new_.b[k] - bar_knots_[k]) <= kNearBar * bar_knots_[k];
+    if (!is_near || std::isnan(bar_slopes_[k])) return false;
+  }
+  return true;
+}
+
+void RollingFeed::linearise_at_result() noexcept {
+  const int cells = new_.cells();
+  for (int k = 0; k <= cells; ++k) {
+    bar_knots_[k] = std::max(new_.b[k], kMinBar * bar_knots_[k]);
+    bar_slopes_[k] = new_.slope[k];
+  }
+  for (int k = 0; k < cells; ++k) bar_middles_[k] = solver_.middle(k);
+}
+
+}  // namespace meridian
