@@ -167,7 +167,8 @@ class MotionReader {
   /// A call drops at most this many pieces and goes on at the next call: an emptied queue never
   /// costs a cycle its deadline.
   static constexpr int kMaxDrops = 128;
-  /// Windows published after one from whose tail the planner can still go on.
+  /// Windows published after one from whose tail the planner can still go on: the smooth run keeps
+  /// as many open, and the feed planner their cells.
   static constexpr std::uint32_t kRemembered = 2;
 
   explicit MotionReader(MotionPort& port) noexcept : port_(port) {}

@@ -13,7 +13,7 @@ void raise(CellBound::Sides& all, const CellBound::Sides& one) noexcept {
 
 CellBlock block_of(const CellGrid& grid, std::int64_t first_cell) noexcept {
   const FeedCell& first = grid[first_cell];
-  CellBlock block{first_cell, {}, first.max_b, first.made_tight, first.bound};
+  CellBlock block{{}, first.max_b, first.made_tight, first.bound};
   block.h[0] = first.h;
   for (int n = 1; n < CellBlock::kCells; ++n) {
     const FeedCell& cell = grid[first_cell + n];
@@ -32,7 +32,9 @@ CellBlock block_of(const CellGrid& grid, std::int64_t first_cell) noexcept {
 
 void CellBlocks::begin(const CellGrid& grid, std::int64_t rest_cell) noexcept {
   constexpr std::int64_t kCells = CellBlock::kCells;
-  begin_ = (grid.first() + kCells - 1) / kCells * kCells;
+  constexpr auto kRoom = static_cast<std::int64_t>(kBlocks) * kCells;
+  const std::int64_t first = std::max(grid.first(), rest_cell - kRoom);
+  begin_ = (first + kCells - 1) / kCells * kCells;
   for (end_ = begin_; end_ + kCells <= rest_cell; end_ += kCells) {
     blocks_[index(end_)] = block_of(grid, end_);
   }

@@ -12,7 +12,6 @@ namespace meridian {
 struct CellBlock {
   static constexpr int kCells = 8;
 
-  std::int64_t first_cell = 0;     ///< a multiple of kCells
   std::array<double, kCells> h{};  ///< lengths of the cells
   double max_b = 0;                ///< least of theirs
   double made_tight = 1;           ///< least of theirs
@@ -23,7 +22,7 @@ struct CellBlock {
 /// many cells looks at one of them only where its block does not pass. RT: no allocation.
 class CellBlocks {
  public:
-  /// Takes the cells of `grid` before `rest_cell` as they are now.
+  /// Takes the cells of `grid` before `rest_cell` as they are now, the last 512 at most.
   void begin(const CellGrid& grid, std::int64_t rest_cell) noexcept;
 
   /// The block that begins with `cell`, or nullptr: none does, or not all of it lies before the
@@ -34,7 +33,7 @@ class CellBlocks {
   }
 
  private:
-  static constexpr std::size_t kBlocks = 64;  ///< cells of a grid by those of a block
+  static constexpr std::size_t kBlocks = 64;
 
   [[nodiscard]] static std::size_t index(std::int64_t cell) noexcept {
     return static_cast<std::size_t>(cell / CellBlock::kCells) & (kBlocks - 1);

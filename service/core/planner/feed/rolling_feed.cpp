@@ -115,14 +115,19 @@ bool RollingFeed::plan_window() noexcept {
   // A steady one behind a bound without jerk: the old plan may have slowed down for a place at
   // which that bound is so far above what jerk allows that no tangent there lets the new one pass.
   static constexpr Attempt kLadder[] = {
-      {true, 1, 0},     {true, 1, 0, RestRoom::kLargest, true},
-      {false, 1, 0},    {true, 0.3, 0},
-      {true, 1, 7},     {false, 0.3, 13},
-      {true, 0.3, 19},  {false, 0.05, 0},
-      {true, 0.05, 11}, {false, 0.01, 5},
+      {true, 1, 0, RestRoom::kOwn},
+      {true, 1, 0},
+      {true, 1, 0, RestRoom::kLargest, true},
+      {false, 1, 0},
+      {true, 0.3, 0},
+      {true, 1, 7},
+      {false, 0.3, 13},
+      {true, 0.3, 19},
+      {false, 0.05, 0},
+      {true, 0.05, 11},
+      {false, 0.01, 5},
   };
-  return attempt({true, 1, 0, RestRoom::kOwn}) ||
-         std::any_of(std::begin(kLadder), std::end(kLadder),
+  return std::any_of(std::begin(kLadder), std::end(kLadder),
                      [this](const Attempt& how) { return attempt(how); });
 }
 

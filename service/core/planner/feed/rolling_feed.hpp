@@ -123,7 +123,7 @@ class RollingFeed {
     double softness;     ///< share of the speed beside rests
     int shorter;         ///< cells that the window is shortened by
     RestRoom room = RestRoom::kLargest;
-    bool is_steady = false;  ///< elsewhere at no more than a steady speed there may be
+    bool is_steady = false;  ///< linearise elsewhere at no more than the steady speed there
   };
 
   [[nodiscard]] bool plan_window() noexcept;

@@ -30,7 +30,7 @@ class StopWalk {
   [[nodiscard]] const PathState& from() const noexcept { return from_; }
   /// Whether it is slower from there on.
   [[nodiscard]] bool is_braking() const noexcept { return !(from_.dds > 0); }
-  /// Largest v |a|, of any stop from no faster.
+  /// Largest v |a| of the stop, and of every slower one.
   [[nodiscard]] double largest_product() const noexcept { return largest_product_; }
 
   /// Largest ṡ² from the begin of the cell on.
@@ -45,14 +45,14 @@ class StopWalk {
     return (1 + kRounding) * max_v2() + rounding_;
   }
 
-  /// Begins in the first cell.
+  /// Goes on to the step before the begin of the cell.
   void enter() noexcept {
     while (to_.s <= s_ && step_ < kSteps) {
       from_ = to_;
       to_ = law_.at(law_.duration() * ++step_ / kSteps);
     }
   }
-  /// Goes over a cell of length `h`.
+  /// The cell, of length `h`, lies behind: the next one begins.
   void pass(double h) noexcept { s_ += h; }
 
   static constexpr double kBetweenSteps = 1.002;  ///< on ṡ² between the steps
@@ -60,7 +60,7 @@ class StopWalk {
  private:
   static constexpr int kSteps = 24;
   static constexpr double kRounding_mm = 1e-9;
-  static constexpr double kRounding = 1e-6;  ///< of ṡ² in the three phases of a stop, by far
+  static constexpr double kRounding = 1e-6;  ///< far above that of ṡ² between the three phases
 
   /// Highest speed of a stop from there.
   [[nodiscard]] double peak_of(const PathState& p) const noexcept {

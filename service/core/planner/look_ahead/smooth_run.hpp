@@ -167,7 +167,7 @@ class SmoothRun : public RewindTrial {
   std::uint64_t staged_spans_ = 0;  ///< path pieces of spans before this one are in the port
   JointVector span_joints_{};       ///< at the end of the last of them
   std::uint32_t window_ = 0;
-  std::array<OpenWindow, 4> open_;
+  std::array<OpenWindow, MotionReader::kRemembered + 2> open_;
   bool has_window_ = false;  ///< feed_.window() waits for room
   bool is_band_finished_ = false;
   bool follows_free_ = false;  ///< the redundant joint has travel and may be turned back

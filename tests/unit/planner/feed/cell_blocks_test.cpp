@@ -34,10 +34,10 @@ void draw_cells(CellGrid& grid) {
   }
 }
 
-bool is_largest(const CellGrid& grid, const CellBlock& block, auto value_of) {
+bool is_largest(const CellGrid& grid, std::int64_t first, const CellBlock& block, auto value_of) {
   CellBound::Values largest = CellBound::Values::Zero();
   for (int n = 0; n < CellBlock::kCells; ++n) {
-    largest = largest.max(value_of(grid[block.first_cell + n].bound));
+    largest = largest.max(value_of(grid[first + n].bound));
   }
   return (value_of(block.bound) == largest).all();
 }
@@ -60,7 +60,7 @@ TEST(CellBlocks, BoundEachOfTheirCells) {
     EXPECT_EQ(block->max_b, min_b);
     EXPECT_EQ(block->made_tight, min_tight);
     const auto check = [&](auto value_of) {
-      EXPECT_TRUE(is_largest(cells.grid, *block, value_of)) << "cell " << cell;
+      EXPECT_TRUE(is_largest(cells.grid, cell, *block, value_of)) << "cell " << cell;
     };
     check([](const CellBound& b) { return b.d1.up; });
     check([](const CellBound& b) { return b.d1.down; });
