@@ -13,7 +13,7 @@
 /// it is filled in by the planner. Frame: W. Units: mm, rad. Proof: tests/unit/path.
 namespace meridian {
 
-/// A straight way of the tip with the axis on the great circle. The axes are unit vectors and not
+/// A straight path of the tip with the axis on the great circle. The axes are unit vectors and not
 /// opposite (find_great_circle() checks it).
 [[nodiscard]] PathPiece make_line(const ToolPose& begin, const ToolPose& end) noexcept;
 

@@ -18,7 +18,7 @@ struct ExplainedBlock {
   std::uint32_t line = 0;
   BlockKind kind = BlockKind::kCut;
   bool is_above_machine_feed = false;
-  double length_mm = 0;            ///< of the programmed way of the tip
+  double length_mm = 0;            ///< of the programmed path of the tip
   double programmed_mm_per_s = 0;  ///< tip feed; 0: none, or the tip rests
   double time_s = 0;               ///< taken
   double lost_s = 0;               ///< of it: more than the programmed feed takes; cuts alone

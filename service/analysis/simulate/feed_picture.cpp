@@ -134,7 +134,7 @@ void FeedPicture::print(std::FILE* out, const std::string& title) const {
   };
   panel(1, "time, s", 0.48);
   std::fputs("unset key\n", out);
-  panel(3, "way of the tip, mm", 0.0);
+  panel(3, "path of the tip, mm", 0.0);
 }
 
 }  // namespace meridian::simulate

@@ -15,7 +15,7 @@
 namespace meridian::ros {
 
 /// `/machine`: its bodies, which move with the frames of `/tf`, once at the begin; `/trail`: the
-/// way of the tip in the workpiece frame, every two seconds the last 20 s of it, so that it is
+/// path of the tip in the workpiece frame, every two seconds the last 20 s of it, so that it is
 /// there wherever a viewer jumps to. Both visualization_msgs/MarkerArray. Proof:
 /// tests/unit/ros/scene_topics_test.cpp.
 class MarkerTopic {

@@ -18,7 +18,7 @@ inline constexpr double kGougeCurvature = 1e-9;
 struct SurfaceReport {
   std::size_t lines = 0;
   std::size_t contacts = 0;  ///< cut blocks after the plunge
-  double length_mm = 0;      ///< way of the tip from first to last contact, on the surface
+  double length_mm = 0;      ///< path of the tip from first to last contact, on the surface
   double seconds_at_feed = 0;
   double convex_radius_mm = 0;   ///< smallest principal radius of curvature away from the cutter
   double concave_radius_mm = 0;  ///< smallest principal radius of curvature towards it

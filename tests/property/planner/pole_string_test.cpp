@@ -34,7 +34,7 @@ struct Lean {
   double x = 0, y = 0;
 };
 
-/// A straight way of the tip, an axis at every block's end.
+/// A straight path of the tip, an axis at every block's end.
 struct Draw {
   std::vector<Lean> axes;
   double step_mm = 1;
