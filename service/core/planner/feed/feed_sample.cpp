@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/build_piece.hpp"
@@ -65,15 +66,14 @@ PathFault take_sample(const MachineModel& model, const FeedLimits& limits, doubl
     b = std::min(
         b, share * square(span.turn_rad_per_s) / std::max(turn_square, square(kZeroDerivative)));
   }
+  double jerk_per_d3 = std::numeric_limits<double>::infinity();
   const auto take = [&](int i, const Jet<3>& q) {
     const double d1 = out.d1[i] = q.derivative(1);
     const double d2 = out.d2[i] = q.derivative(2);
     const double d3 = out.d3[i] = q.derivative(3);
     b = std::min(b, square(limits.velocity[i] / std::max(std::abs(d1), kZeroDerivative)));
     b = std::min(b, limits.acceleration[i] / std::max(std::abs(d2), kZeroDerivative));
-    // Four times what the curvature alone would allow: b' and b'' may make up for some of it.
-    b = std::min(b,
-                 4 * std::pow(limits.jerk[i] / std::max(std::abs(d3), kZeroDerivative), 2.0 / 3.0));
+    jerk_per_d3 = std::min(jerk_per_d3, limits.jerk[i] / std::max(std::abs(d3), kZeroDerivative));
   };
   for (int i = 0; i < model.joint_count; ++i) {
     reference[i] = value_of(at.q[i]);
@@ -83,6 +83,8 @@ PathFault take_sample(const MachineModel& model, const FeedLimits& limits, doubl
     const Limited<Jet<3>> all = limited_of(model, at.q);
     for (int i = model.joint_count; i < limits.count; ++i) take(i, all[i]);
   }
+  // Four times what the curvature alone would allow: b' and b'' may make up for some of it.
+  b = std::min(b, 4 * std::pow(jerk_per_d3, 2.0 / 3.0));
   if (!std::isfinite(b)) return {PathFault::Kind::kUnreachable, -1, 0};
   out.max_b = b;
   return {};
