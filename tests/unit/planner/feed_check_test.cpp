@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "service/core/planner/feed/feed_rest.hpp"
 #include "support/machines.hpp"
@@ -232,6 +234,76 @@ TEST(FeedCheck, SlowsTheLastResortForATopBetweenSamples) {
     EXPECT_LE(use_of(limits, grid, 0, safe).worst(), 1 + 1e-12);
     EXPECT_EQ(safe.duration > sampled.duration, has_top);
   }
+}
+
+TEST(FeedCheck, IsBoundedByTheDerivativesOfItsCell) {
+  std::mt19937 random(5);
+  const auto real = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  FeedLimits limits = unit_limits();
+  limits.slope = 0.2;
+  limits.curvature = 0.1;
+  double tightest = 1e9;
+  for (int draw = 0; draw < 2000; ++draw) {
+    FeedCell cell;
+    cell.h = 0.1;
+    cell.max_b = real(0.5, 2);
+    const auto curve = [&](LimitedVector CellSample::*d, CellBound::Sides& sides) {
+      const double at_begin = real(-1, 1), rise = real(-0.5, 0.5), bend = real(-0.5, 0.5);
+      double low = 1e9, high = -1e9;
+      for (int k = 0; k <= FeedCell::kSteps; ++k) {
+        const double x = static_cast<double>(k) / FeedCell::kSteps;
+        const double value = at_begin + x * (rise + x * bend);
+        (cell.at[static_cast<std::size_t>(k)].*d)[0] = value;
+        cell.at[static_cast<std::size_t>(k)].max_b = cell.max_b;
+        low = std::min(low, value);
+        high = std::max(high, value);
+      }
+      const double beyond = 0.125 * (high - low);
+      sides.up[0] = std::max(0.0, high + beyond);
+      sides.down[0] = std::max(0.0, beyond - low);
+    };
+    curve(&CellSample::d1, cell.bound.d1);
+    curve(&CellSample::d2, cell.bound.d2);
+    curve(&CellSample::d3, cell.bound.d3);
+    cell.bound.rate = cell.bound.d1.up.max(cell.bound.d1.down);
+    const CellLaw law{real(0.2, 1), real(-3, 3), real(-3, 3)};
+    const FeedUse use = use_of(limits, cell, law), max = max_use_of(limits, cell, law);
+    SCOPED_TRACE(testing::Message() << "draw " << draw);
+    EXPECT_GE(max.velocity, use.velocity);
+    EXPECT_GE(max.acceleration, 0.98 * use.acceleration);
+    EXPECT_GE(max.jerk, 0.98 * use.jerk);
+    EXPECT_GE(max.b, use.b * (1 - 1e-12));
+    tightest = std::min(tightest, max.worst() / use.worst());
+  }
+  EXPECT_LT(tightest, 1.1) << "where everything comes together it is hardly more";
+}
+
+TEST(FeedCheck, IsItsBoundWhereNothingChanges) {
+  FeedCell cell;
+  cell.h = 0.1;
+  cell.max_b = 4;
+  for (CellSample& at : cell.at) {
+    at.d1[0] = -0.5;
+    at.max_b = 4;
+  }
+  cell.bound.d1.down[0] = cell.bound.rate[0] = 0.5;
+  const FeedLimits limits = unit_limits();
+  const FeedUse use = use_of(limits, cell, {1, 0, 0}), max = max_use_of(limits, cell, {1, 0, 0});
+  EXPECT_DOUBLE_EQ(max.velocity, use.velocity);
+  EXPECT_DOUBLE_EQ(max.b, use.b);
+  EXPECT_EQ(max.acceleration, 0);
+  EXPECT_EQ(max.jerk, 0);
+}
+
+TEST(FeedCheck, HasNoBoundWhereTheSpeedMayComeToNothing) {
+  FeedCell cell;
+  cell.h = 0.1;
+  cell.max_b = 1;
+  EXPECT_GT(max_use_of(unit_limits(), cell, {0.01, -1, 1}).worst(), 1e8);
+  EXPECT_GT(max_use_of(unit_limits(), cell, {0.04, -1, 0}).worst(), 1e8);
+  EXPECT_LT(max_use_of(unit_limits(), cell, {0.2, -1, 0}).worst(), 1e8);
 }
 
 }  // namespace

@@ -103,6 +103,34 @@ FeedUse use_of(const FeedLimits& limits, const FeedCell& cell, const CellLaw& la
   return use_of_motion(limits, cell, motion, b);
 }
 
+FeedUse max_use_of(const FeedLimits& limits, const FeedCell& cell, const CellLaw& law) noexcept {
+  const double second = (law.slope_end - law.slope) / cell.h;
+  const double middle = law.b + 0.5 * law.slope * cell.h;  // b is within its Bézier points
+  const double end = middle + 0.5 * law.slope_end * cell.h;
+  FeedUse use;
+  if (!(std::min({law.b, middle, end}) > 0)) {
+    use.jerk = kNoBound;
+    return use;
+  }
+  const double b = std::max({law.b, middle, end}), v = std::sqrt(b);
+  const double a = 0.5 * std::max(std::abs(law.slope), std::abs(law.slope_end));
+  const double j = 0.5 * std::abs(second) * v;
+  use.b = b / cell.max_b;
+  const CellBound& bound = cell.bound;
+  for (int i = 0; i < limits.count; ++i) {
+    const double d1 = bound.rate[i], d2 = std::max(bound.d2.up[i], bound.d2.down[i]);
+    const double d3 = std::max(bound.d3.up[i], bound.d3.down[i]);
+    const double velocity = d1 * v, alone = d1 * a + d2 * b;
+    const double jerk = d1 * j + 3 * d2 * v * a + d3 * v * b + 3 * limits.slope * alone +
+                        limits.curvature * velocity;
+    use.velocity = std::max(use.velocity, velocity / limits.velocity[i]);
+    use.acceleration =
+        std::max(use.acceleration, (alone + limits.slope * velocity) / limits.acceleration[i]);
+    use.jerk = std::max(use.jerk, jerk / limits.full_jerk[i]);
+  }
+  return use;
+}
+
 FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell,
                       const CellMotion& motion) noexcept {
   Samples b;

@@ -37,6 +37,11 @@ struct CellMotion {
 [[nodiscard]] FeedUse use_of(const FeedLimits& limits, const FeedCell& cell,
                              const CellLaw& law) noexcept;
 
+/// No less than use_of() but for what its parabolas rise above the samples: by the bounds of the
+/// cell, at a fraction of the cost.
+[[nodiscard]] FeedUse max_use_of(const FeedLimits& limits, const FeedCell& cell,
+                                 const CellLaw& law) noexcept;
+
 /// Adds the use of u̇, ü, u⃛ at one sample.
 void add_use(const FeedLimits& limits, const CellSample& at, double v, double a, double j,
              FeedUse& use) noexcept;

@@ -11,6 +11,10 @@ namespace {
 constexpr double kOldShare = 0.6;  // of the bound: an old plan above it is worth linearising at
 constexpr double kMinBar = 1e-6;   // of the largest, or of the one before
 constexpr double kNearBar = 0.05;  // of u̇²: the tangent there is as good as that at the plan
+constexpr double kLoose = 0.9;     // of what rows leave: none of them binds
+
+/// Share of the jerk that a tangent of b^-½ leaves where b is `ratio` times that of the tangent.
+double left_by_tangent(double ratio) noexcept { return (1.5 - 0.5 * ratio) * std::sqrt(ratio); }
 
 }  // namespace
 
@@ -41,12 +45,16 @@ void RollingFeed::choose_bar(const Attempt& how) noexcept {
   for (int k = 0; k < cells; ++k) bar_middles_[k] = 0.5 * (bar_knots_[k] + bar_knots_[k + 1]);
 }
 
-/// Whether what stands of the result is where jerk was linearised: again would gain nothing.
+/// Whether what stands of the result is where jerk was linearised, or far from its limits there:
+/// again would gain nothing.
 bool RollingFeed::is_near_bar() const noexcept {
   const int near = std::min(new_.cells(), settings_.commit_cells + settings_.commit_cells / 2);
   for (int k = 0; k < near; ++k) {
-    const bool is_near = std::abs(new_.b[k] - bar_knots_[k]) <= kNearBar * bar_knots_[k];
-    if (!is_near || std::isnan(bar_slopes_[k])) return false;
+    const bool has_tangent = !std::isnan(bar_slopes_[k]);
+    const double ratio = new_.b[k] / bar_knots_[k];
+    if (has_tangent && std::abs(ratio - 1) <= kNearBar) continue;
+    const double left = (has_tangent ? 1 : jerk_without_tangent_) * left_by_tangent(ratio);
+    if (!(std::max(uses_[k].acceleration, uses_[k].jerk) <= kLoose * left)) return false;
   }
   return true;
 }

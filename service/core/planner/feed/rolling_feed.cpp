@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "service/core/planner/feed/feed_check.hpp"
 #include "service/core/planner/feed/two_pass.hpp"
 
 namespace meridian {
@@ -25,6 +24,8 @@ constexpr double kBesideSlow = 0.25;  // of u̇² at that bound, beside a slow c
 constexpr int kHistory = 240;         // cells kept behind the next one, at most: three windows
 constexpr int kSpare = 8;             // cells of the store
 constexpr int kTrials = 2;            // results far from it that tighten no cell
+constexpr int kMoreFromRest = 2;      // programmes, where there is no old plan to begin at
+constexpr double kSure = 0.9;         // use by a cell's bounds: no closer look is needed
 constexpr double kFeedSlack = 1.002;  // on u̇², beside CellSettings::feed_share
 
 /// u̇² beside a rest, of what the cells within reach keep up and what the cell at the rest does, as
@@ -61,6 +62,10 @@ RollingFeed::RollingFeed(const MachineModel& model, const FeedSettings& settings
        {&backward_, &bound_, &bar_knots_, &bar_middles_, &bar_slopes_, &accel_share_, &jerk_share_,
         &old_.b, &old_.slope, &new_.b, &new_.slope, &best_.b, &best_.slope}) {
     v->resize(static_cast<std::size_t>(settings_.window_cells) + 2);
+  }
+  uses_.resize(static_cast<std::size_t>(settings_.window_cells) + 2);
+  for (int i = 0; i < limits_.count; ++i) {
+    jerk_without_tangent_ = std::min(jerk_without_tangent_, limits_.jerk[i] / limits_.full_jerk[i]);
   }
 }
 
@@ -179,8 +184,9 @@ double RollingFeed::stop_b(std::int64_t first, std::int64_t end) const noexcept 
 
 bool RollingFeed::refine() noexcept {
   const int cells = new_.cells();
+  const int wanted = settings_.refinements + (is_at_rest_ ? kMoreFromRest : 0);
   int good = 0, trials = 0;
-  for (int round = 0; round < kTightenings + settings_.refinements; ++round) {
+  for (int round = 0; round < kTightenings + wanted; ++round) {
     for (int k = 0; k <= cells; ++k) {
       const double funnel = 1 - kFunnel * std::min(1.0, 1.0 * k / settings_.window_cells);
       accel_share_[k] = jerk_share_[k] = funnel * grid_[new_.first + k].tight;
@@ -201,10 +207,11 @@ bool RollingFeed::refine() noexcept {
     count_.max_rounds = std::max(count_.max_rounds, window_rounds_);
     if (!is_solved) break;
     take_result();
+    const bool is_good = check();
     // Far from a tangent a result may break a limit, and no cell is at fault; without one it is.
     const bool is_far = !is_near_bar(), has_tangent = !std::isnan(bar_slopes_[0]);
     const bool is_trial = is_far && has_tangent && good == 0 && ++trials <= kTrials;
-    const bool is_good = check_and_tighten(round < kTightenings && !is_trial);
+    if (!is_good && !is_trial && round < kTightenings) tighten();
     if (is_far && (is_good || has_tangent)) linearise_at_result();
     if (!is_good) {
       if (!is_trial) ++count_.tightened;
@@ -212,7 +219,7 @@ bool RollingFeed::refine() noexcept {
     }
     std::swap(best_.b, new_.b);
     std::swap(best_.slope, new_.slope);
-    if (++good == settings_.refinements || !is_far) break;
+    if (++good == wanted || !is_far) break;
   }
   if (good == 0) return false;
   std::swap(best_.b, new_.b);
@@ -231,27 +238,32 @@ void RollingFeed::take_result() noexcept {
   new_.slope[0] = state_.slope;
 }
 
-bool RollingFeed::check_and_tighten(bool may_tighten) noexcept {
-  const int cells = new_.cells();
+bool RollingFeed::check() noexcept {
   bool is_good = true;
+  for (int k = 0; k < new_.cells(); ++k) {
+    const FeedCell& cell = grid_[new_.first + k];
+    const CellLaw law{new_.b[k], new_.slope[k], new_.slope[k + 1]};
+    FeedUse& use = uses_[k] = max_use_of(limits_, cell, law);
+    if (use.worst() > kSure || use.b > 1) use = use_of(limits_, cell, law);
+    is_good = is_good && use.worst() <= 1 && use.b <= kFeedSlack;
+  }
+  return is_good;
+}
+
+void RollingFeed::tighten() noexcept {
+  const int cells = new_.cells();
   for (int k = 0; k < cells; ++k) {
-    FeedCell& cell = grid_[new_.first + k];
-    const FeedUse use = use_of(limits_, cell, {new_.b[k], new_.slope[k], new_.slope[k + 1]});
-    const double worst = use.worst();
+    const double worst = uses_[k].worst();
     if (worst > 1) {
-      is_good = false;
-      if (!may_tighten) continue;
       for (int n = std::max(0, k - 1); n <= std::min(cells - 1, k + 1); ++n) {
         FeedCell& near = grid_[new_.first + n];
         const double by = n == k ? std::min(worst, 1.5) + 0.004 : 1.002;
         near.tight = std::max(kMinTight, near.tight / by);
       }
-    } else if (use.b > kFeedSlack) {
-      is_good = false;
-      if (may_tighten) cell.max_b /= std::min(use.b, 1.1) + 0.002;
+    } else if (uses_[k].b > kFeedSlack) {
+      grid_[new_.first + k].max_b /= std::min(uses_[k].b, 1.1) + 0.002;
     }
   }
-  return is_good;
 }
 
 }  // namespace meridian

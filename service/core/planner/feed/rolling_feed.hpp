@@ -8,6 +8,7 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/core/planner/feed/feed_cells.hpp"
+#include "service/core/planner/feed/feed_check.hpp"
 #include "service/core/planner/feed/feed_piece.hpp"
 #include "service/core/planner/feed/feed_rest.hpp"
 #include "service/core/planner/feed/jerk_step.hpp"
@@ -23,7 +24,8 @@ struct FeedSettings {
   double commit_s = 0.06;  ///< less motion than this
   int max_rounds = 240;    ///< of the solver per window; then the plan before it stands
   /// Convex programmes per window at most, each around the result of the last. There is a second
-  /// one where the first leads away from the plan of the window before, around which it was made.
+  /// one where the first leads away from the plan of the window before, around which it was made;
+  /// from rest, where there is none, two more.
   int refinements = 2;
   /// Share of the windows that are declared to have no plan: for tests of what then happens.
   double failing_share = 0;
@@ -136,7 +138,9 @@ class RollingFeed {
   [[nodiscard]] double stop_b(std::int64_t first, std::int64_t end) const noexcept;
   void choose_bar(const Attempt& how) noexcept;
   [[nodiscard]] bool refine() noexcept;
-  [[nodiscard]] bool check_and_tighten(bool may_tighten) noexcept;
+  /// What the plan uses of the limits, cell by cell. Whether it keeps them.
+  [[nodiscard]] bool check() noexcept;
+  void tighten() noexcept;
   void take_result() noexcept;
   [[nodiscard]] int cells_to_keep(const Plan& plan) const noexcept;
   [[nodiscard]] std::size_t find_tail(std::int64_t first, int& kept) const noexcept;
@@ -161,7 +165,9 @@ class RollingFeed {
   Plan old_, new_, best_;
   std::vector<double> backward_, bound_, bar_knots_, bar_middles_, bar_slopes_, accel_share_,
       jerk_share_;
-  FeedPieces pieces_;  ///< of the window, the tail behind what is committed
+  std::vector<FeedUse> uses_;        ///< of the plan that was checked last
+  double jerk_without_tangent_ = 1;  ///< share of the jerk that rows have where b' is not known
+  FeedPieces pieces_;                ///< of the window, the tail behind what is committed
   FeedWindow window_;
   FeedCount count_;
   std::int64_t window_rounds_ = 0;  ///< of the solver, spent on this window
