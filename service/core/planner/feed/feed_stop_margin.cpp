@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "meridian/planner/rate_limits.hpp"
 #include "meridian/planner/time_law.hpp"
@@ -19,15 +20,11 @@ constexpr double kHopeless = 0.02;   // of what the piece's own cell allows
 constexpr double kEasing = 0.9;      // of the deceleration that there is: a stop may ease off to it
 constexpr double kRounding_mm = 1e-9;
 constexpr double kTiny = 1e-12;
+constexpr std::int64_t kNoEnd = std::numeric_limits<std::int64_t>::max();
 constexpr double kFast = 1.0002;  // on ṡ² that feed and velocity allow: what a plan may use
 constexpr double kSlow = 0.6;     // rate of plan time below which slow_* may be used
 /// Rates of plan time at which authority is sought where there is none at the full rate.
 constexpr double kRates[] = {0.97, 0.94, 0.9, 0.85, 0.78, 0.7, 0.6, 0.45, 0.3, 0.15};
-
-/// The plan's state at another rate of plan time.
-PathState slowed(const PathState& p, double rate) noexcept {
-  return {p.s, rate * p.ds, rate * rate * p.dds, 0};
-}
 
 /// Deepest deceleration of a stop that nothing but its jerk bounds.
 double depth_of(const PathState& p, double jerk) noexcept {
@@ -55,84 +52,94 @@ void FeedStopMargin::begin(const CellGrid& grid, std::int64_t rest_cell) noexcep
   hold_.last = fault_.last = {};  // what is granted follows from the window alone
 }
 
-FeedStopMargin::Ends FeedStopMargin::Ends::at_rate(double rate) const noexcept {
-  Ends out{slowed(begin, rate), slowed(end, rate), {}};
-  for (std::size_t n = 0; n < between.size(); ++n) out.between[n] = slowed(between[n], rate);
-  return out;
+void FeedStopMargin::grant(std::span<const FeedPiece> pieces, std::span<TimePiece> times) noexcept {
+  if (grant(StopStretch(*grid_, pieces, times), times)) return;
+  for (std::size_t n = 0; n < pieces.size(); ++n) {
+    const auto time = times.subspan(n, 1);
+    (void)grant(StopStretch(*grid_, pieces.subspan(n, 1), time), time);
+  }
 }
 
-void FeedStopMargin::grant(const FeedPiece& piece, TimePiece& time) noexcept {
-  const auto state = [&](double share) {
-    PathState at = state_at(time, share * time.duration);
-    at.s -= (*grid_)[piece.cell].x;
-    return at;
-  };
-  const Ends ends{state(0), state(1), {state(0.25), state(0.5), state(0.75)}};
-  const Grant hold = find(hold_, piece.cell, ends, !time.is_tail);
-  time.stop_accel = hold.authority.accel;
-  time.stop_jerk = hold.authority.jerk;
-  time.stop_velocity = hold.velocity;
-  const Grant fault = find(fault_, piece.cell, ends, !time.is_tail);
-  time.fault_accel = fault.authority.accel;
-  time.fault_jerk = fault.authority.jerk;
-  time.fault_velocity = fault.velocity;
-  time.slow_velocity = kSlow * std::min(ends.begin.ds, ends.end.ds);
-  if (time.is_tail) return;
-  const Ends slow = ends.at_rate(kSlow);
-  const StopMargin slow_hold = find(hold_.caps, piece.cell, slow);
-  time.slow_stop_accel = slow_hold.accel;
-  time.slow_stop_jerk = slow_hold.jerk;
-  const StopMargin slow_fault = find(fault_.caps, piece.cell, slow);
-  time.slow_fault_accel = slow_fault.accel;
-  time.slow_fault_jerk = slow_fault.jerk;
+bool FeedStopMargin::grant(const StopStretch& stretch, std::span<TimePiece> times) noexcept {
+  const bool is_tail = times.front().is_tail, is_alone = times.size() == 1;
+  const Grant hold = find(hold_, stretch, is_alone && !is_tail);
+  if (!is_alone && !(hold.authority.jerk > 0)) return false;
+  const Grant fault = find(fault_, stretch, is_alone && !is_tail);
+  if (!is_alone && !(fault.authority.jerk > 0)) return false;
+  StopMargin slow_hold, slow_fault;
+  if (!is_tail) {
+    const StopStretch slow = stretch.at_rate(kSlow);
+    slow_hold = find(hold_.caps, slow);
+    slow_fault = find(fault_.caps, slow);
+  }
+  const double slow_velocity = kSlow * stretch.min_velocity();
+  for (TimePiece& time : times) {
+    time.stop_accel = hold.authority.accel;
+    time.stop_jerk = hold.authority.jerk;
+    time.stop_velocity = hold.velocity;
+    time.fault_accel = fault.authority.accel;
+    time.fault_jerk = fault.authority.jerk;
+    time.fault_velocity = fault.velocity;
+    time.slow_velocity = slow_velocity;
+    time.slow_stop_accel = slow_hold.accel;
+    time.slow_stop_jerk = slow_hold.jerk;
+    time.slow_fault_accel = slow_fault.accel;
+    time.slow_fault_jerk = slow_fault.jerk;
+  }
+  return true;
 }
 
-StopMargin FeedStopMargin::max_in(const Caps& caps, std::int64_t cell) const noexcept {
-  const CellBound::Values& rate = (*grid_)[cell].bound.rate;
-  return {1 / std::max(kTiny, (rate * caps.acceleration).maxCoeff()),
-          1 / std::max(kTiny, (rate * caps.jerk).maxCoeff())};
+StopMargin FeedStopMargin::max_in(const Caps& caps, const StopStretch& stretch) const noexcept {
+  double accel = kTiny, jerk = kTiny;
+  for (const StopStretch::Part& part : stretch.parts()) {
+    const CellBound::Values& rate = (*grid_)[part.cell].bound.rate;
+    accel = std::max(accel, (rate * caps.acceleration).maxCoeff());
+    jerk = std::max(jerk, (rate * caps.jerk).maxCoeff());
+  }
+  return {1 / accel, 1 / jerk};
 }
 
-StopMargin FeedStopMargin::find(const Caps& caps, std::int64_t cell,
-                                const Ends& ends) const noexcept {
-  const StopMargin largest = max_in(caps, cell);
-  return lessen(caps, cell, ends, largest, largest);
+StopMargin FeedStopMargin::find(const Caps& caps, const StopStretch& stretch) const noexcept {
+  const StopMargin largest = max_in(caps, stretch);
+  return lessen(caps, stretch, largest, largest);
 }
 
-FeedStopMargin::Grant FeedStopMargin::find(Search& search, std::int64_t cell, const Ends& ends,
+FeedStopMargin::Grant FeedStopMargin::find(Search& search, const StopStretch& stretch,
                                            bool is_slower_good) const noexcept {
-  const StopMargin largest = max_in(search.caps, cell);
+  const StopMargin largest = max_in(search.caps, stretch);
   StopMargin got;
   if (search.last.jerk > 0) {
     const StopMargin start{std::min(largest.accel, kMaxGrowth * search.last.accel),
                            std::min(largest.jerk, kMaxGrowth * search.last.jerk)};
-    got = lessen(search.caps, cell, ends, start, largest);
+    got = lessen(search.caps, stretch, start, largest);
   }
-  if (!(got.jerk > 0)) got = lessen(search.caps, cell, ends, largest, largest);
+  if (!(got.jerk > 0)) got = lessen(search.caps, stretch, largest, largest);
   search.last = got;
   if (got.jerk > 0) return {got, kAnyVelocity};
   if (!is_slower_good) return {};
   for (const double rate : kRates) {
-    const Ends slower = ends.at_rate(rate);
-    got = lessen(search.caps, cell, slower, largest, largest);
-    if (got.jerk > 0) return {got, std::min(slower.begin.ds, slower.end.ds)};
+    const StopStretch slower = stretch.at_rate(rate);
+    got = lessen(search.caps, slower, largest, largest);
+    if (got.jerk > 0) return {got, slower.min_velocity()};
   }
   return {};
 }
 
-StopMargin FeedStopMargin::lessen(const Caps& caps, std::int64_t cell, const Ends& from,
-                                  StopMargin now, const StopMargin& largest) const noexcept {
+StopMargin FeedStopMargin::lessen(const Caps& caps, const StopStretch& stretch, StopMargin now,
+                                  const StopMargin& largest) const noexcept {
+  const double deceleration = stretch.max_deceleration();
   for (int round = 0; round < kMarginRounds; ++round) {
-    const double depth = std::max(depth_of(from.begin, now.jerk), depth_of(from.end, now.jerk));
+    double depth = depth_of(stretch.end(), now.jerk);
+    for (const StopStretch::Part& part : stretch.parts()) {
+      depth = std::max(depth, depth_of(part.begin, now.jerk));
+    }
     now.accel = std::min(now.accel, 1.02 * depth);
-    Use use;
-    if (!add_use(caps, cell, from.begin, now, use)) break;
-    if (use.is_within() && !add_use(caps, cell, from.end, now, use)) break;
+    const Use use = use_of(caps, stretch, now);
+    if (use.is_too_far || use.is_too_fast) break;
     if (use.is_within()) {
       const bool is_close = use.farthest + 2 >= rest_cell_;
-      return !is_close || ends_before_plan(cell, from, now) ? now : StopMargin{};
+      return !is_close || ends_before_plan(stretch, now) ? now : StopMargin{};
     }
-    if (use.is_too_fast) break;
     if (use.acceleration > 1) now.accel *= kLess / std::min(use.acceleration, 2.0);
     if (use.jerk > 1) {
       const Cause cause = cause_of(caps, use);
@@ -143,33 +150,39 @@ StopMargin FeedStopMargin::lessen(const Caps& caps, std::int64_t cell, const End
       if (cause.by_depth > 0.3 * rest) now.accel *= by;
     }
     if (now.jerk < kHopeless * largest.jerk || now.accel < kHopeless * largest.accel) break;
-    if (now.accel < kEasing * std::max(-from.begin.dds, -from.end.dds)) break;
+    if (now.accel < kEasing * deceleration) break;
   }
   return {};
 }
 
-bool FeedStopMargin::ends_before_plan(std::int64_t cell, const Ends& from,
+bool FeedStopMargin::ends_before_plan(const StopStretch& stretch,
                                       const StopMargin& authority) const noexcept {
   double end = 0;
-  for (std::int64_t k = cell; k < rest_cell_; ++k) end += (*grid_)[k].h;
+  for (std::int64_t k = stretch.parts().front().cell; k < rest_cell_; ++k) end += (*grid_)[k].h;
   const auto rest = [&](const PathState& p) { return p.s + StopLaw(p, authority).distance(); };
-  const std::array<double, 5> rests = {rest(from.begin), rest(from.between[0]),
-                                       rest(from.between[1]), rest(from.between[2]),
-                                       rest(from.end)};
-  double farthest = std::max(rests[0], rests[4]), bend = 0;
-  for (std::size_t n = 1; n + 1 < rests.size(); ++n) {
-    farthest = std::max(farthest, rests[n]);
-    bend = std::max(bend, std::abs(rests[n - 1] - 2 * rests[n] + rests[n + 1]));
+  const auto parts = stretch.parts();
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    const StopStretch::Part& from = parts[part];
+    const bool is_last = part + 1 == parts.size();
+    const std::array<double, 5> rests = {rest(from.begin), rest(from.between[0]),
+                                         rest(from.between[1]), rest(from.between[2]),
+                                         rest(is_last ? stretch.end() : parts[part + 1].begin)};
+    double farthest = std::max(rests[0], rests[4]), bend = 0;
+    for (std::size_t n = 1; n + 1 < rests.size(); ++n) {
+      farthest = std::max(farthest, rests[n]);
+      bend = std::max(bend, std::abs(rests[n - 1] - 2 * rests[n] + rests[n + 1]));
+    }
+    if (!(farthest + bend / 4 <= end + kRounding_mm)) return false;
   }
-  return farthest + bend / 4 <= end + kRounding_mm;
+  return true;
 }
 
-bool FeedStopMargin::rises_too_far(const FeedCell& cell, const PathState& begin,
+bool FeedStopMargin::rises_too_far(const FeedCell& cell, const PathState& begin, double in_cell,
                                    double jerk) noexcept {
   if (!(begin.dds > 0)) return false;
   const double peak = square(begin.ds + 0.5 * begin.dds * begin.dds / jerk);
   for (int k = 0; k <= FeedCell::kSteps; ++k) {
-    const double ahead = cell.h * k / FeedCell::kSteps - begin.s;
+    const double ahead = cell.h * k / FeedCell::kSteps - in_cell;
     if (ahead < 0) continue;
     const double v2 = std::min(peak, square(begin.ds) + 2 * begin.dds * ahead);
     if (v2 > kFast * cell.at[static_cast<std::size_t>(k)].max_b) return true;
@@ -202,11 +215,36 @@ bool FeedStopMargin::passes(const Caps& caps, const CellBlock& block, const Stop
          share.jerk <= std::max(1.0, use.jerk);
 }
 
-bool FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, const PathState& begin,
-                             const StopMargin& authority, Use& use) const noexcept {
-  StopWalk walk(begin, authority);
-  for (std::int64_t k = cell; walk.is_moving();) {
-    if (k >= rest_cell_) return false;
+FeedStopMargin::Use FeedStopMargin::use_of(const Caps& caps, const StopStretch& stretch,
+                                           const StopMargin& authority) const noexcept {
+  const auto parts = stretch.parts();
+  const auto walk_from = [&](std::size_t n) {
+    return n < parts.size() ? StopWalk(parts[n].begin, authority, parts[n].cell_begin)
+                            : StopWalk(stretch.end(), authority, parts.back().cell_begin);
+  };
+  Use use;
+  StopWalk walk = walk_from(0);
+  for (std::size_t n = 0; n < parts.size() && use.is_within(); ++n) {
+    StopWalk next = walk_from(n + 1);
+    const bool is_below = walk.stays_below(next, parts[n].duration);
+    add_use(caps, parts[n].cell, is_below ? parts[n].cell + 1 : kNoEnd, walk, use);
+    if (is_below) next.raise_product(walk.largest_product());
+    walk = next;
+  }
+  if (use.is_within()) add_use(caps, parts.back().cell, kNoEnd, walk, use);
+  return use;
+}
+
+void FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, std::int64_t end, StopWalk walk,
+                             Use& use) const noexcept {
+  const PathState begin = walk.from();
+  const double in_cell = begin.s - walk.s();
+  const StopMargin authority = walk.authority();
+  for (std::int64_t k = cell; k < end && walk.is_moving();) {
+    if (k >= rest_cell_) {
+      use.is_too_far = true;
+      return;
+    }
     walk.enter();
     const CellBlock* block = k > cell && walk.is_braking() ? blocks_.find(k) : nullptr;
     if (block != nullptr && passes(caps, *block, walk, use)) {
@@ -218,12 +256,9 @@ bool FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, const PathStat
     }
     const FeedCell& here = (*grid_)[k];
     const Motion motion = motion_in_cell(walk, k == cell);
-    const bool is_too_fast = k > cell ? motion.v2 > StopWalk::kBetweenSteps * kFast * here.max_b
-                                      : rises_too_far(here, begin, authority.jerk);
-    if (is_too_fast) {
-      use.is_too_fast = true;
-      return true;
-    }
+    use.is_too_fast = k > cell ? motion.v2 > StopWalk::kBetweenSteps * kFast * here.max_b
+                               : rises_too_far(here, begin, in_cell, authority.jerk);
+    if (use.is_too_fast) return;
     const Share share = share_of(caps, here.bound, here.made_tight, authority, motion);
     use.acceleration = std::max(use.acceleration, share.acceleration);
     if (share.jerk > use.jerk) {
@@ -234,7 +269,6 @@ bool FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, const PathStat
     walk.pass(here.h);
     use.farthest = std::max(use.farthest, k++);
   }
-  return true;
 }
 
 FeedStopMargin::Share FeedStopMargin::share_of(const Caps& caps, const CellBound& at,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 
 #include "meridian/cycle/stop_law.hpp"
 #include "meridian/kinematics/limited.hpp"
@@ -10,6 +10,7 @@
 #include "service/core/planner/feed/cell_blocks.hpp"
 #include "service/core/planner/feed/feed_cells.hpp"
 #include "service/core/planner/feed/feed_piece.hpp"
+#include "service/core/planner/feed/stop_stretch.hpp"
 #include "service/core/planner/feed/stop_walk.hpp"
 
 namespace meridian {
@@ -19,9 +20,10 @@ namespace meridian {
 /// every state of the piece, at whatever rate of plan time up to the one that it is granted for.
 ///
 /// The stops from both ends of the piece are run through the cells ahead; one that starts slower is
-/// nowhere faster. Every cell has bounds of the joints' derivatives, so the most that stops may use
-/// there is a sum; blocks of cells that pass as one are not looked at one by one. What stops use
-/// too much of is lessened until all cells pass; where nothing is left it is sought for slower
+/// nowhere faster. Where the stop from its begin stays below that from its end, it is run through
+/// its own cell alone. Every cell has bounds of the joints' derivatives, so the most that stops may
+/// use there is a sum; blocks of cells that pass as one are not looked at one by one. What stops
+/// use too much of is lessened until all cells pass; where nothing is left it is sought for slower
 /// rates (docs/motion.md, section 9).
 /// Proof: tests/property/planner/smooth_stop_test.cpp.
 class FeedStopMargin {
@@ -35,7 +37,10 @@ class FeedStopMargin {
   /// Fills in the authority of `time`, made of `piece`: at the full rate or the next one that has
   /// some, and for slow motions; 0 where there is none. In a tail, which comes to rest anyway, at
   /// the full rate alone.
-  void grant(const FeedPiece& piece, TimePiece& time) noexcept;
+  void grant(const FeedPiece& piece, TimePiece& time) noexcept { grant({&piece, 1}, {&time, 1}); }
+  /// The same of StopStretch::kMaxParts pieces at most that follow one another and share one
+  /// authority; where none is good for all of them, each gets its own.
+  void grant(std::span<const FeedPiece> pieces, std::span<TimePiece> times) noexcept;
 
  private:
   /// One over the limits.
@@ -60,11 +65,12 @@ class FeedStopMargin {
   struct Use {
     double acceleration = 0, jerk = 0;
     bool is_too_fast = false;   ///< for feed or velocity
+    bool is_too_far = false;    ///< it ends behind the plan
     std::int64_t farthest = 0;  ///< cell that a stop ends in
     std::int64_t cell = 0;      ///< where most of the jerk is used, and by what
     Motion motion;
     [[nodiscard]] bool is_within() const noexcept {
-      return !is_too_fast && acceleration <= 1 && jerk <= 1;
+      return !is_too_fast && !is_too_far && acceleration <= 1 && jerk <= 1;
     }
   };
   /// Shares of the jerk at the worst place: by deceleration on the bend, by the bend alone.
@@ -72,37 +78,36 @@ class FeedStopMargin {
     double by_depth = 0, by_speed = 0;
   };
 
-  /// States at both ends of a piece and between, s counted from the begin of its cell.
-  struct Ends {
-    PathState begin, end;
-    std::array<PathState, 3> between;
-    [[nodiscard]] Ends at_rate(double rate) const noexcept;
-  };
   /// What stops may use that start with no more than `velocity`.
   struct Grant {
     StopMargin authority;
     double velocity = 0;
   };
 
-  [[nodiscard]] Grant find(Search& search, std::int64_t cell, const Ends& ends,
+  /// Into `times`. False: there is no authority for all of a stretch of several pieces.
+  [[nodiscard]] bool grant(const StopStretch& stretch, std::span<TimePiece> times) noexcept;
+  [[nodiscard]] Grant find(Search& search, const StopStretch& stretch,
                            bool is_slower_good) const noexcept;
-  [[nodiscard]] StopMargin find(const Caps& caps, std::int64_t cell,
-                                const Ends& ends) const noexcept;
-  /// What the cell allows next to rest.
-  [[nodiscard]] StopMargin max_in(const Caps& caps, std::int64_t cell) const noexcept;
-  /// `now` or less of it, that all stops from `from` may use; 0: there is none.
-  [[nodiscard]] StopMargin lessen(const Caps& caps, std::int64_t cell, const Ends& from,
-                                  StopMargin now, const StopMargin& largest) const noexcept;
-  /// Whether a stop from `begin` passes the speed that `cell` allows before its s̈ is down to zero.
+  [[nodiscard]] StopMargin find(const Caps& caps, const StopStretch& stretch) const noexcept;
+  /// What the cells of the stretch allow next to rest.
+  [[nodiscard]] StopMargin max_in(const Caps& caps, const StopStretch& stretch) const noexcept;
+  /// `now` or less of it, that all stops from `stretch` may use; 0: there is none.
+  [[nodiscard]] StopMargin lessen(const Caps& caps, const StopStretch& stretch, StopMargin now,
+                                  const StopMargin& largest) const noexcept;
+  /// Whether a stop from `begin`, `in_cell` behind the begin of `cell`, passes the speed that this
+  /// allows before its s̈ is down to zero.
   [[nodiscard]] static bool rises_too_far(const FeedCell& cell, const PathState& begin,
-                                          double jerk) noexcept;
+                                          double in_cell, double jerk) noexcept;
   /// Whether stops from between the ends of a piece end before the plan does, where those from its
   /// ends do: they may go farther where the plan brakes harder than they.
-  [[nodiscard]] bool ends_before_plan(std::int64_t cell, const Ends& from,
+  [[nodiscard]] bool ends_before_plan(const StopStretch& stretch,
                                       const StopMargin& authority) const noexcept;
-  /// Adds the use of all stops under the one from `begin`. False: it ends behind the plan.
-  [[nodiscard]] bool add_use(const Caps& caps, std::int64_t cell, const PathState& begin,
-                             const StopMargin& authority, Use& use) const noexcept;
+  /// The use of all stops from `stretch`, or of some that use too much.
+  [[nodiscard]] Use use_of(const Caps& caps, const StopStretch& stretch,
+                           const StopMargin& authority) const noexcept;
+  /// Adds the use of all stops under `walk`, which begins in `cell`, in the cells before `end`.
+  void add_use(const Caps& caps, std::int64_t cell, std::int64_t end, StopWalk walk,
+               Use& use) const noexcept;
   /// Bounds of what stops under `walk` do in the cell that it enters, the first of them or a later
   /// one.
   [[nodiscard]] Motion motion_in_cell(const StopWalk& walk, bool is_first) const noexcept;

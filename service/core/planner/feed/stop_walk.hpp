@@ -10,28 +10,51 @@
 namespace meridian {
 
 /// A stop on its path through cells, in even steps of time: the state that it has at the begin of
-/// each cell, and bounds of it from there on. s counts from the begin of the first cell. RT: no
+/// each cell, and bounds of it from there on. The first cell begins at s = `cell_begin`. RT: no
 /// allocation.
 class StopWalk {
  public:
-  StopWalk(const PathState& begin, const StopMargin& authority) noexcept
+  StopWalk(const PathState& begin, const StopMargin& authority, double cell_begin = 0) noexcept
       : authority_(authority),
         law_(begin, authority),
         rest_(begin.s + law_.distance()),
         largest_product_(largest_stop_product(peak_of(begin), authority.accel, authority.jerk)),
         rounding_(kRounding * peak_v2_of(begin)),
         from_(begin),
-        to_(begin) {}
+        to_(begin),
+        s_(cell_begin) {}
 
   [[nodiscard]] const StopMargin& authority() const noexcept { return authority_; }
   /// Whether it still moves at the begin of the cell.
   [[nodiscard]] bool is_moving() const noexcept { return s_ + kRounding_mm < rest_; }
   /// State at the step before the begin of the cell.
   [[nodiscard]] const PathState& from() const noexcept { return from_; }
+  /// s at the begin of the cell.
+  [[nodiscard]] double s() const noexcept { return s_; }
   /// Whether it is slower from there on.
   [[nodiscard]] bool is_braking() const noexcept { return !(from_.dds > 0); }
   /// Largest v |a| of the stop, and of every slower one.
   [[nodiscard]] double largest_product() const noexcept { return largest_product_; }
+  /// It stands for another stop too, whose v |a| may be as large as that.
+  void raise_product(double other) noexcept {
+    largest_product_ = std::max(largest_product_, other);
+  }
+
+  /// Whether it is nowhere faster than `next` from where that begins: a stop of the same plan under
+  /// the same authority, from `duration` later. Neither was begun to walk.
+  ///
+  /// Where both have the same s and speed the later one decelerates no harder, so no stop comes
+  /// from below another: if it arrives slower, and with no more acceleration, it stays below. Of
+  /// one that arrives on the last of its three phases the speed alone says so, as no stop at that
+  /// speed decelerates harder than there. (Not where a plan is about to end by itself, as the jerk
+  /// of its stop is another one.)
+  [[nodiscard]] bool stays_below(const StopWalk& next, double duration) const noexcept {
+    const PathState& begin = next.from_;
+    if (ends_by_itself(from_) || ends_by_itself(begin)) return false;
+    const PathState at = law_.at(duration);
+    const double fastest = at.dds > 0 ? peak_of(at) : at.ds;
+    return at.s <= begin.s && fastest <= begin.ds && (at.dds <= begin.dds || is_in_last_phase(at));
+  }
 
   /// Largest ṡ² from the begin of the cell on.
   [[nodiscard]] double max_v2() const noexcept {
@@ -62,6 +85,13 @@ class StopWalk {
   static constexpr double kRounding_mm = 1e-9;
   static constexpr double kRounding = 1e-6;  ///< far above that of ṡ² between the three phases
 
+  /// Whether the speed is gone before the deceleration is.
+  [[nodiscard]] bool ends_by_itself(const PathState& p) const noexcept {
+    return p.dds < 0 && p.dds * p.dds >= 2 * authority_.jerk * p.ds;
+  }
+  [[nodiscard]] bool is_in_last_phase(const PathState& p) const noexcept {
+    return p.dds < 0 && p.dds * p.dds >= 2 * (1 - kRounding) * authority_.jerk * p.ds;
+  }
   /// Highest speed of a stop from there.
   [[nodiscard]] double peak_of(const PathState& p) const noexcept {
     return p.ds + 0.5 * p.dds * p.dds / authority_.jerk;

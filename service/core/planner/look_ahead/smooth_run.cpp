@@ -2,6 +2,7 @@
 #include "service/core/planner/look_ahead/smooth_run.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "meridian/path/pose_at.hpp"
@@ -315,8 +316,8 @@ bool SmoothRun::write(MotionWriter& writer) noexcept {
   }
   bool is_written = stage_spans(writer, until);
   stop_margin_.begin(feed_.grid(), window.rest_cell);
-  for (const FeedPiece& piece : window.committed) is_written &= stage_piece(writer, piece, false);
-  for (const FeedPiece& piece : window.tail) is_written &= stage_piece(writer, piece, true);
+  is_written &= stage_pieces(writer, window.committed, false);
+  is_written &= stage_pieces(writer, window.tail, true);
   if (!is_written) {
     writer.discard();
     return false;
@@ -353,7 +354,7 @@ bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept 
   return true;
 }
 
-bool SmoothRun::stage_piece(MotionWriter& writer, const FeedPiece& piece, bool is_tail) noexcept {
+TimePiece SmoothRun::make_piece(const FeedPiece& piece, bool is_tail) const noexcept {
   const JointSpan& joint_span = spans_[static_cast<std::int64_t>(piece.span)];
   const BandSpan& span = joint_span.band;
   TimePiece time;
@@ -368,8 +369,23 @@ bool SmoothRun::stage_piece(MotionWriter& writer, const FeedPiece& piece, bool i
   put_law(piece, time);
   time.feed_mm_per_s = std::isfinite(span.feed_mm_per_s) ? span.feed_mm_per_s : 0;
   time.feed_factor = joint_span.feed_factor;
-  stop_margin_.grant(piece, time);
-  return writer.stage(time);
+  return time;
+}
+
+/// Hardly any tail is ever entered: its pieces share their authority to stop.
+bool SmoothRun::stage_pieces(MotionWriter& writer, std::span<const FeedPiece> pieces,
+                             bool is_tail) noexcept {
+  const std::size_t together = is_tail ? StopStretch::kMaxParts : 1;
+  std::array<TimePiece, StopStretch::kMaxParts> times;
+  bool is_staged = true;
+  while (!pieces.empty()) {
+    const auto some = pieces.first(std::min(together, pieces.size()));
+    for (std::size_t n = 0; n < some.size(); ++n) times[n] = make_piece(some[n], is_tail);
+    stop_margin_.grant(some, {times.data(), some.size()});
+    for (std::size_t n = 0; n < some.size(); ++n) is_staged &= writer.stage(times[n]);
+    pieces = pieces.subspan(some.size());
+  }
+  return is_staged;
 }
 
 }  // namespace meridian

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/path/band_spline.hpp"
@@ -150,8 +151,9 @@ class SmoothRun : public RewindTrial {
   [[nodiscard]] bool write(MotionWriter& writer) noexcept;
   [[nodiscard]] JointVector joints_at_end(const PathPiece& piece) const noexcept;
   [[nodiscard]] bool stage_spans(MotionWriter& writer, std::uint64_t until) noexcept;
-  [[nodiscard]] bool stage_piece(MotionWriter& writer, const FeedPiece& piece,
-                                 bool is_tail) noexcept;
+  [[nodiscard]] TimePiece make_piece(const FeedPiece& piece, bool is_tail) const noexcept;
+  [[nodiscard]] bool stage_pieces(MotionWriter& writer, std::span<const FeedPiece> pieces,
+                                  bool is_tail) noexcept;
 
   const MachineModel& model_;
   FeedRaise& raise_;

@@ -75,5 +75,64 @@ TEST(StopWalk, EndsWhereTheStopDoes) {
   EXPECT_EQ(cells, static_cast<int>(rest / kH) + 1);
 }
 
+TEST(StopWalk, StaysBelowALaterOneOfThePlanWhereItSaysSo) {
+  std::mt19937 random(7);
+  const auto real = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  int below = 0, steady = 0;
+  for (int n = 0; n < 2000; ++n) {
+    // A piece of a plan, and the stops from both of its ends.
+    const double duration = real(1e-3, 1e-2), j = n % 2 == 0 ? 0 : real(-40000, 40000);
+    const PathState begin{0, real(2, 100), n % 4 < 2 ? 0 : real(-1500, 1500), j};
+    const PathState end{duration * (begin.ds + duration * (begin.dds / 2 + duration * j / 6)),
+                        begin.ds + duration * (begin.dds + duration * j / 2),
+                        begin.dds + duration * j, 0};
+    if (!(end.ds > 1)) continue;
+    const StopMargin authority{real(200, 3000), real(10000, 90000)};
+    const StopWalk first(begin, authority), next(end, authority);
+    if (j == 0 && begin.dds == 0) ++steady;
+    if (!first.stays_below(next, duration)) continue;
+    ++below;
+    const StopLaw law(begin, authority), later(end, authority);
+    EXPECT_LE(begin.s + law.distance(), end.s + later.distance() + 1e-9) << "draw " << n;
+    for (int k = 0; k <= 40; ++k) {
+      const double s = end.s + law.distance() * k / 40;
+      EXPECT_LE(v2_at(law, s), v2_at(later, s) + 1e-6) << "draw " << n << " at " << s;
+    }
+  }
+  EXPECT_GT(steady, 400);
+  EXPECT_GT(below, steady) << "at an even speed always, and where the plan brakes less than it";
+}
+
+TEST(StopWalk, StaysBelowNoStopOfAPlanThatBrakesHarder) {
+  const StopMargin authority{1000, 30000};
+  const StopWalk first({0, 50, -2000, 0}, authority);
+  const StopWalk next({0.48, 46, -2000, 0}, authority);
+  EXPECT_FALSE(first.stays_below(next, 0.01));
+}
+
+TEST(StopWalk, StandsForAnotherStopToo) {
+  StopWalk walk({0, 50, 0, 0}, {2000, 40000});
+  const double own = walk.largest_product();
+  walk.raise_product(0.5 * own);
+  EXPECT_EQ(walk.largest_product(), own);
+  walk.raise_product(2 * own);
+  EXPECT_EQ(walk.largest_product(), 2 * own);
+}
+
+TEST(StopWalk, BeginsInACellThatBeginsElsewhere) {
+  const StopMargin authority{1000, 30000};
+  StopWalk near({0.02, 40, 0, 0}, authority), far({1.02, 40, 0, 0}, authority, 1.0);
+  for (; near.is_moving(); near.pass(kH), far.pass(kH)) {
+    ASSERT_TRUE(far.is_moving());
+    near.enter();
+    far.enter();
+    EXPECT_NEAR(far.s(), near.s() + 1, 1e-12);
+    EXPECT_NEAR(far.max_v2(), near.max_v2(), 1e-6);
+  }
+  EXPECT_FALSE(far.is_moving());
+}
+
 }  // namespace
 }  // namespace meridian::test::stop_walk
