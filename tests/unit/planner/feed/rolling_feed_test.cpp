@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "meridian/path/pose_at.hpp"
 #include "unit/planner/feed/rolled_feed.hpp"
 
 namespace meridian::test::rolling_feed {
