@@ -147,6 +147,31 @@ TEST(LegFeed, HasNoMoreCellsHoweverLongTheLeg) {
   EXPECT_LT(one.staged->time_count, 700);
 }
 
+TEST(LegFeed, HasCellsThatShrinkTowardsBothEndsAlike) {
+  const ToolPose here = pose_of({0, 0, 0}, 0.3, 0.2), there = pose_of({120, 0, 0}, 0.3, 0.25);
+  for (const double feed_mm_per_s : {4.0, 10.0, 30.0}) {
+    Fed forth(bench_machine(), here, there, feed_mm_per_s);
+    Fed back(bench_machine(), there, here, feed_mm_per_s);
+    const double duration = forth.plan();
+    ASSERT_GT(duration, 120 / feed_mm_per_s);
+    EXPECT_NEAR(back.plan(), duration, 1e-5 * duration);
+    const int last = forth.staged->time_count - 1;
+    const double rest_s = forth.staged->times[0].duration;
+    EXPECT_NEAR(forth.staged->times[last].duration, rest_s, 0.01 * rest_s);
+    EXPECT_LT(rest_s, 0.03) << "however slow the feed";
+    EXPECT_LT(duration - 120 / feed_mm_per_s, 0.15) << "lost at both rests together";
+  }
+}
+
+TEST(LegFeed, StagesNothingWhereTheFeedWouldCrawl) {
+  // On 1 mm the axis passes the pole: C turns by half a turn in the middle of it.
+  Fed one(bench_machine(), pose_of({0, 0, 0}, 0.3, 0.05), pose_of({1, 0, 0}, 0.3, 3.1), 30);
+  EXPECT_EQ(one.plan(), 0);
+  EXPECT_EQ(one.staged->path_count, 0);
+  EXPECT_EQ(one.staged->time_count, 0);
+  EXPECT_EQ(one.joints, one.start);
+}
+
 JointCell cell_of(double begin, double end, double d1, double share_rate) {
   JointCell cell;
   cell.begin = begin;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <numbers>
 
 #include "meridian/geometry/great_circle.hpp"
@@ -12,39 +11,10 @@
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/profile.hpp"
 #include "support/machines.hpp"
-#include "unit/planner/feed/staged_motion.hpp"
+#include "unit/planner/feed/planned_leg.hpp"
 
 namespace meridian::test::leg_planner {
 namespace {
-
-ToolPose pose_of(const Vector3& tip, double tilt, double azimuth) {
-  return {tip,
-          {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)}};
-}
-
-/// One leg, planned; its pieces are the third and those that follow.
-struct Planned {
-  explicit Planned(const MachineModel& m) : model(m), planner(model) { staged->clear(100); }
-  PathFault plan(Leg leg, const JointVector& from) {
-    leg.path.tool_length_mm = model.tool_length_mm;
-    leg.path.branch = 0;
-    leg.window = 7;
-    start = joints = from;
-    return planner.plan(leg, *staged, joints);
-  }
-  /// From `begin` on branch 0.
-  PathFault plan_line(const ToolPose& begin, const ToolPose& end, double feed_mm_per_s) {
-    Leg leg;
-    leg.path = make_line(begin, end);
-    leg.feed_mm_per_s = feed_mm_per_s;
-    return plan(leg, solve(model, model.tool_length_mm, begin, 0, {}).q);
-  }
-
-  MachineModel model;
-  LegPlanner planner;
-  std::unique_ptr<Staging> staged = std::make_unique<Staging>();
-  JointVector start{}, joints{};
-};
 
 Leg joint_move(const JointVector& begin, const JointVector& end) {
   Leg leg;
