@@ -188,7 +188,7 @@ bool PoleWalls::find_runs() noexcept {
     const bool goes_on = run_count_ > 0 && runs_[run_count_ - 1].last == n;
     if (!goes_on) {
       if (run_count_ == kRuns) return false;
-      runs_[run_count_++] = {n, n, 0, 0};
+      runs_[run_count_++] = {n, n};
     }
     runs_[run_count_ - 1].last = n + 1;
   }
