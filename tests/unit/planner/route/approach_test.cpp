@@ -197,17 +197,34 @@ TEST(Approach, TakesTheBranchAndWindingThatIsNearest) {
   }
 }
 
-TEST(Approach, KeepsHalfATurnOffTheEndOfTravelWhereItCan) {
-  MachineModel model = lai_machine();
-  Approached probe(model);
-  const ClBlock block = cut({80, 20, 10}, tilted(0.3, 0.6));
-  ASSERT_FALSE(is_fault(probe.router.approach(block, probe.cursor, *probe.staged)));
-  const double at = probe.cursor.joints[3];
-  model.joints[3].limits.travel_max = at + 0.05;
-  model.joints[3].limits.travel_min = at - 14;
-  Approached one(model);
-  ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
-  EXPECT_LT(one.cursor.joints[3], at - 2) << "another branch or winding has room";
+TEST(Approach, KeepsHalfATurnOffEitherEndOfTravelWhereItCan) {
+  for (const double azimuth : {0.2, 0.6}) {  // C turns one direction or the other, to there
+    Approached probe(lai_machine());
+    const ClBlock block = cut({80, 20, 10}, tilted(0.3, azimuth));
+    ASSERT_FALSE(is_fault(probe.router.approach(block, probe.cursor, *probe.staged)));
+    const double at = probe.cursor.joints[3], side = at > probe.start[3] ? 1 : -1;
+    MachineModel model = lai_machine();
+    model.joints[3].limits.travel_min = side > 0 ? at - 14 : at - 0.05;
+    model.joints[3].limits.travel_max = side > 0 ? at + 0.05 : at + 14;
+    Approached one(model);
+    ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
+    EXPECT_LT(side * (one.cursor.joints[3] - at), -2) << "another branch or winding has room";
+  }
+}
+
+TEST(Approach, ReportsTheAxisDeviationOfItsOwnAlone) {
+  Approached one(lai_machine());
+  const double off_rad = 0.5 * kPoleDeviation_rad;
+  ASSERT_FALSE(is_fault(
+      one.router.approach(cut({80, 20, 10}, tilted(off_rad, 1)), one.cursor, *one.staged)));
+  EXPECT_NEAR(one.router.axis_deviation_rad(), off_rad, 1e-12);
+  ASSERT_FALSE(
+      is_fault(one.router.approach(cut({40, 0, 0}, tilted(0.3, 0.6)), one.cursor, *one.staged)));
+  EXPECT_EQ(one.router.axis_deviation_rad(), 0);
+  (void)one.router.relaxed(tilted(off_rad, 1), kPoleDeviation_rad);
+  ASSERT_FALSE(is_fault(one.router.approach_joints(cut({40, 0, 0}, tilted(0.3, 0.6)), one.start,
+                                                   one.cursor, *one.staged)));
+  EXPECT_EQ(one.router.axis_deviation_rad(), 0) << "to joints as well";
 }
 
 TEST(Approach, TakesTheWayThatTheBlocksBehindItAllow) {
