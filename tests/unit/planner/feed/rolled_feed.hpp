@@ -8,6 +8,7 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/build_piece.hpp"
+#include "meridian/path/pose_at.hpp"
 #include "meridian/planner/time_law.hpp"
 #include "service/core/planner/feed/rolling_feed.hpp"
 #include "support/machines.hpp"
@@ -126,6 +127,30 @@ struct Rolled {
   std::vector<FeedSpan> spans;
   std::vector<RolledWindow> windows;
 };
+
+/// Straight on, and beside it a swing in two spans of 75 short cells, at whose end the swinging
+/// joint rests in two derivatives by u but not in the third.
+inline void add_swing(Rolled& one) {
+  constexpr double kLength = 0.5, kBend = 3, kThird = 4 * kBend / kLength;
+  constexpr double kRate = 2 * kBend * kLength / 3;  // of y in the middle; y'' = 4 bend t (1 - t)
+  JointSpan span;
+  const auto add = [&](double length, int cells) {
+    span.band.length = length;
+    FeedSpan out = make_feed_span(span, one.model.tool_length_mm);
+    out.feed_mm_per_s = 50;
+    out.cells = cells;
+    one.spans.push_back(out);
+    span.band.c[0][0] += length;
+  };
+  span.band.c = {
+      {{30, 1}, {0, 0, 0, kThird / 6, -kThird / (12 * kLength)}, {-20}, {0.3}, {0.3}, {1}}};
+  one.start = solve(one.model, one.model.tool_length_mm, pose_on(span.band.c, 0.0), 0, {}).q;
+  add(kLength, 75);
+  span.band.c[1] = {kRate * kLength / 2, kRate, 0, -kThird / 6, kThird / (12 * kLength)};
+  add(kLength, 75);
+  span.band.c[1] = {kRate * kLength};
+  add(12, 54);
+}
 
 /// Expects pieces that follow one another, with speed and acceleration, from `v`, `a` to rest.
 inline void expect_joined(const std::vector<FeedPiece>& run, double v = 0, double a = 0) {

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
-#include "meridian/path/pose_at.hpp"
 #include "unit/planner/feed/rolled_feed.hpp"
 
 namespace meridian::test::rolling_feed {
@@ -106,6 +106,23 @@ TEST(RollingFeed, EveryWindowGoesOnFromTheLastAndCouldEndAtRestInItsTail) {
   EXPECT_EQ(one.windows.back().rest_cell, 600);
 }
 
+TEST(RollingFeed, NotEvenRoundingComesBetweenTwoWindows) {
+  Rolled straight, bent;
+  straight.add_straight(60, 3.2, 10, 80);
+  bent.add_bent(40, 1000);
+  for (Rolled* one : {&straight, &bent}) {
+    one->run();
+    ASSERT_GT(one->windows.size(), 5U);
+    for (std::size_t n = 1; n < one->windows.size(); ++n) {
+      const FeedPiece& planned = one->windows[n - 1].tail.front();
+      const FeedPiece& got = one->windows[n].committed.front();
+      EXPECT_EQ(got.cell, planned.cell) << n;
+      EXPECT_EQ(got.v, planned.v) << n;
+      EXPECT_EQ(got.a, planned.a) << n;
+    }
+  }
+}
+
 TEST(RollingFeed, DependsOnTheSpansAndNotOnWhenTheyCame) {
   Rolled early, late;
   for (Rolled* one : {&early, &late}) one->add_bent(40, 30);
@@ -158,30 +175,6 @@ TEST(RollingFeed, ASlowCellNearARestDoesNotMakeTheMotionCrawl) {
     EXPECT_LT(one.duration(), 2 * ideal_s(66, 80)) << (is_at_end ? "end" : "begin");
     EXPECT_EQ(one.feed.count().crawls + one.feed.count().kept, 0);
   }
-}
-
-/// Straight on, and beside it a swing in two spans of 75 short cells, at whose end the swinging
-/// joint rests in two derivatives by u but not in the third.
-void add_swing(Rolled& one) {
-  constexpr double kLength = 0.5, kBend = 3, kThird = 4 * kBend / kLength;
-  constexpr double kRate = 2 * kBend * kLength / 3;  // of y in the middle; y'' = 4 bend t (1 - t)
-  JointSpan span;
-  const auto add = [&](double length, int cells) {
-    span.band.length = length;
-    FeedSpan out = make_feed_span(span, one.model.tool_length_mm);
-    out.feed_mm_per_s = 50;
-    out.cells = cells;
-    one.spans.push_back(out);
-    span.band.c[0][0] += length;
-  };
-  span.band.c = {
-      {{30, 1}, {0, 0, 0, kThird / 6, -kThird / (12 * kLength)}, {-20}, {0.3}, {0.3}, {1}}};
-  one.start = solve(one.model, one.model.tool_length_mm, pose_on(span.band.c, 0.0), 0, {}).q;
-  add(kLength, 75);
-  span.band.c[1] = {kRate * kLength / 2, kRate, 0, -kThird / 6, kThird / (12 * kLength)};
-  add(kLength, 75);
-  span.band.c[1] = {kRate * kLength};
-  add(12, 54);
 }
 
 /// Beyond the old plan a tangent at a bound without jerk asks for less than the jerk there.

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// Where the jerk of a window is linearised: when one programme is enough, and what a second gains.
+
+#include <gtest/gtest.h>
+
+#include "unit/planner/feed/rolled_feed.hpp"
+
+namespace meridian::test::rolling_bar {
+namespace {
+
+TEST(RollingBar, OneProgrammeIsEnoughWhereAWindowGoesOnAsTheOneBefore) {
+  Rolled straight, bent;
+  straight.add_straight(150, 3.2, 10, 80);
+  bent.add_bent(40, 20);
+  for (Rolled* one : {&straight, &bent}) {
+    one->run();
+    const FeedCount& count = one->feed.count();
+    EXPECT_EQ(count.solves, count.windows + 1) << "twice from rest, where there is none before";
+    EXPECT_EQ(count.tightened + count.kept, 0);
+  }
+}
+
+TEST(RollingBar, ASecondProgrammeGainsWhereTheFirstLeadsAway) {
+  const auto swing_s = [](int refinements) {
+    MachineModel model = bench_machine();
+    model.joints[1].limits.jerk = 627;
+    FeedSettings settings = without_reserve();
+    settings.refinements = refinements;
+    Rolled one(settings, model);
+    add_swing(one);
+    one.run();
+    EXPECT_LE(one.use(one.pieces()).worst(), 1 + 1e-6);
+    return one.duration();
+  };
+  const double once = swing_s(1), twice = swing_s(2), thrice = swing_s(3);
+  EXPECT_LT(twice, 0.94 * once);
+  EXPECT_LE(thrice, twice);
+  EXPECT_GT(thrice, 0.99 * twice) << "more of them hardly gain";
+}
+
+}  // namespace
+}  // namespace meridian::test::rolling_bar
