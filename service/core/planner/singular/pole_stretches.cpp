@@ -107,9 +107,9 @@ PoleStretches::ProbeIndex PoleStretches::find_hold(double begin) const noexcept 
 
 double PoleStretches::find_room_after(double core_end) const noexcept {
   const double room = std::min(kPoleReach_mm, kReachShare * (probes_.end_u() - core_end));
-  for (ProbeIndex n = run_.last + 1;
+  for (ProbeIndex n = run_.seen + 1;
        n + 1 < probes_.end_probe() && probes_.u_of(n) < core_end + 2 * kPoleReach_mm; ++n) {
-    if (n > run_.seen && is_close(n)) return std::min(room, kHalf * (probes_.u_of(n) - core_end));
+    if (is_close(n)) return std::min(room, kHalf * (probes_.u_of(n) - core_end));
   }
   return room;
 }

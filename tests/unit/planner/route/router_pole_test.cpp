@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <span>
 #include <vector>
@@ -196,6 +197,30 @@ TEST(Router, LeavesThePoleByTheWayThatCarriesFarthest) {
     EXPECT_FALSE(one.router.needs_ahead());
     EXPECT_GT(answers.found.size(), 2U) << "both branches and several windings";
   }
+}
+
+TEST(Router, AsksOnceAboutEveryBranchAndWindingInsideTravel) {
+  Routed one(lai_machine());
+  Answers answers;
+  one.router.ask(&answers);
+  one.stand_at({{0, 0, 0}, Vector3::UnitZ()});
+  const ToolPose end{{60, 0, 0}, tilted(0.3, 1.2)};
+  const JointVector from = one.cursor.joints;
+  ASSERT_FALSE(is_fault(one.route(cut(end.tip, end.axis))));
+  std::vector<double> expected, asked;
+  for (int branch = 0; branch < 2; ++branch) {
+    const double free = solve(one.model, one.model.tool_length_mm, end, branch, from).q[3];
+    for (int turns = -4; turns <= 4; ++turns) {
+      const double wound = free + turns * kTurn_rad;
+      if (std::abs(wound) <= 4 * std::numbers::pi) expected.push_back(wound);
+    }
+  }
+  for (const RouteAhead& route : answers.found) asked.push_back(route.free);
+  std::sort(expected.begin(), expected.end());
+  std::sort(asked.begin(), asked.end());
+  ASSERT_EQ(asked.size(), expected.size());
+  EXPECT_EQ(asked.size(), 8U) << "two turns each way, on two branches";
+  for (std::size_t n = 0; n < asked.size(); ++n) EXPECT_NEAR(asked[n], expected[n], kRounding);
 }
 
 TEST(Router, SaysThatItWaitsForBlocks) {

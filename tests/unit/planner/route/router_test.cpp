@@ -15,6 +15,14 @@
 namespace meridian::test::router {
 namespace {
 
+TEST(Router, BeginsWithNoMotionBlockBeforeIt) {
+  const PlanCursor begin;
+  EXPECT_TRUE(begin.is_first);
+  EXPECT_FALSE(begin.has_retracted);
+  EXPECT_FALSE(begin.relaxed_from);
+  EXPECT_EQ(begin.cut_mm_per_s, 0);
+}
+
 TEST(Router, HoldsTheRedundantJointWhereTheAxisStandsStill) {
   Routed one(lai_machine());
   one.stand_at({{0, 0, 0}, tilted(0.3, 0.4)});

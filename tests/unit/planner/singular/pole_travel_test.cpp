@@ -91,6 +91,18 @@ TEST(PoleTravel, SeesATurnThatIsSharperThanItsSteps) {
   EXPECT_NEAR(std::abs(path.from(6, 0).free - begin), std::numbers::pi, 0.03);
 }
 
+TEST(PoleTravel, SeesAJointThatIsOutsideTravelForAMillimetreAlone) {
+  const auto lean = [](double u) { return Lean{u == 40 ? 0.5 : 0.2, 0.1}; };
+  Followed path(lean);
+  ASSERT_TRUE(path.from(2, 0).keeps_travel);
+  path.model.joints[4].limits.travel_min = -0.4;
+  path.model.joints[4].limits.travel_max = 0.4;
+  EXPECT_FALSE(path.from(2, 0).keeps_travel);
+  EXPECT_TRUE(path.from(42, 0).keeps_travel) << "behind it";
+  path.pass.known_end = 38;
+  EXPECT_TRUE(path.from(2, 0).keeps_travel) << "ahead of it";
+}
+
 TEST(PoleTravel, ASlideOutsideTravelCountsAsWell) {
   Followed path(round);
   ASSERT_TRUE(path.from(2, 0).keeps_travel);
