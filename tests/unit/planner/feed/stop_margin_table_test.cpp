@@ -161,6 +161,30 @@ TEST(StopMarginTable, CutsNoMoreThanItHasTo) {
   EXPECT_LE(got.cuts.size(), 12U);
 }
 
+/// Of what stops may use, over the time of the motion.
+double average_of_stops(const Granted& got) {
+  double sum = 0, duration = 0;
+  for (const TimePiece& time : got.times) {
+    sum += time.duration * time.slow_stop_accel;
+    duration += time.duration;
+  }
+  return sum / duration;
+}
+
+/// Paths so short that a stop goes over many of their cells.
+TEST(StopMarginTable, OnAShortPathAFewCutsGiveStopsMostOfWhatThereIs) {
+  const Granted harder(cells_of(10, 0, [](int n) { return n < 6 ? 1.0 : 5.0; }), 0, 10);
+  EXPECT_LE(harder.cuts.size(), 6U);
+  EXPECT_GT(average_of_stops(harder), 470) << "1000 before the hard stretch, 200 on it";
+  const Granted bump(cells_of(20, 0, [](int n) { return n == 10 ? 3.0 : 1.0; }), 0, 20);
+  EXPECT_LE(bump.cuts.size(), 9U);
+  EXPECT_GT(average_of_stops(bump), 838) << "1000 beside the bump, 333 on it";
+  for (const Granted* got : {&harder, &bump}) {
+    EXPECT_LE(got->use(false, 0).acceleration[0], 1 + 1e-9);
+    EXPECT_LE(got->use(false, 0).jerk[0], 1 + 1e-9);
+  }
+}
+
 TEST(StopMarginTable, CutsNoPhaseWhereCellsDifferLittle) {
   const Granted got(cells_of(60, 0, [](int n) { return n < 40 ? 1.0 : 1.05; }), 0, 60);
   EXPECT_TRUE(got.cuts.empty());
