@@ -141,6 +141,25 @@ TEST(PathChoice, UsesLessVelocityOnAShortWayThatDoesNotReachIt) {
   EXPECT_LT(choice.profile.duration(), 1.03 * straight.duration());
 }
 
+TEST(PathChoice, IsHardlySlowerThanAtAnyLowerFeed) {
+  struct Case {
+    double d1, d2, d3, velocity, acceleration, jerk, length;
+  };
+  // Joints that bend, on lengths over which acceleration and velocity are both used.
+  for (const Case& c : {Case{1.9576, 8.38e-3, 3.65e-4, 167, 165, 1e5, 12},
+                        Case{0.7039, 7.89e-4, 1.196e-3, 204, 164, 1.4e5, 31.2},
+                        Case{1.1973, 2.71e-3, 1.13e-6, 113, 185, 3.39e4, 18.3}}) {
+    const JointCaps caps = caps_of(c.velocity, c.acceleration, c.jerk);
+    const std::array cells{cell_of(c.d1, c.d2, c.d3)};
+    const MotionChoice choice = choose_motion(cells, caps, c.length, 1e9);
+    for (const double share : {0.9, 0.75, 0.6, 0.5, 0.4}) {
+      const double feed = share * c.velocity / c.d1;
+      const MotionChoice lower = choose_motion(cells, caps, c.length, feed);
+      EXPECT_LT(choice.profile.duration(), 1.005 * lower.profile.duration()) << share;
+    }
+  }
+}
+
 TEST(PathChoice, HasNoMotionWhereRoundingTakesAllJerk) {
   JointCaps caps = caps_of(100, 1000, 20000);
   caps.noise_gain[0] = 1e12;
