@@ -218,7 +218,7 @@ bool PoleString::is_within(const PoleZone& piece, double off) noexcept {
 }
 
 bool PoleString::is_inside() noexcept {
-  constexpr int kSteps = 4;
+  constexpr int kSteps = 8;
   deviation_rad_ = 0;
   bool is_inside = true;
   for (std::size_t n = 0; n < trial_count_; ++n) {
