@@ -24,7 +24,6 @@ constexpr double kBesideSlow = 0.25;  // of u̇² at that bound, beside a slow c
 constexpr int kHistory = 240;         // cells kept behind the next one, at most: three windows
 constexpr int kSpare = 8;             // cells of the store
 constexpr int kTrials = 2;            // results far from it that tighten no cell
-constexpr int kMoreFromRest = 2;      // programmes, where there is no old plan to begin at
 constexpr double kSure = 0.9;         // use by a cell's bounds: no closer look is needed
 constexpr double kFeedSlack = 1.002;  // on u̇², beside CellSettings::feed_share
 
@@ -184,7 +183,7 @@ double RollingFeed::stop_b(std::int64_t first, std::int64_t end) const noexcept 
 
 bool RollingFeed::refine() noexcept {
   const int cells = new_.cells();
-  const int wanted = settings_.refinements + (is_at_rest_ ? kMoreFromRest : 0);
+  const int wanted = settings_.refinements + (is_at_rest_ ? settings_.more_from_rest : 0);
   int good = 0, trials = 0;
   for (int round = 0; round < kTightenings + wanted; ++round) {
     for (int k = 0; k <= cells; ++k) {

@@ -24,9 +24,9 @@ struct FeedSettings {
   double commit_s = 0.06;  ///< less motion than this
   int max_rounds = 240;    ///< of the solver per window; then the plan before it stands
   /// Convex programmes per window at most, each around the result of the last. There is a second
-  /// one where the first leads away from the plan of the window before, around which it was made;
-  /// from rest, where there is none, two more.
+  /// one where the first leads away from the plan of the window before, around which it was made.
   int refinements = 2;
+  int more_from_rest = 2;  ///< of them, where there is no plan before
   /// Share of the windows that are declared to have no plan: for tests of what then happens.
   double failing_share = 0;
 };

@@ -27,6 +27,7 @@ TEST(RollingBar, ASecondProgrammeGainsWhereTheFirstLeadsAway) {
     model.joints[1].limits.jerk = 627;
     FeedSettings settings = without_reserve();
     settings.refinements = refinements;
+    settings.more_from_rest = 0;
     Rolled one(settings, model);
     add_swing(one);
     one.run();
