@@ -206,13 +206,17 @@ void Plant::must(Verb verb, double argument, Refusal passing) {
 }
 
 bool Plant::enable() {
+  // Service and drives start meanwhile, which takes a host that is busy or slow at memory long.
+  constexpr milliseconds kPatience(30000);
   // Until feedback is there an enable is refused: ask again.
-  return eventually([this] {
-           std::this_thread::sleep_for(milliseconds(20));
-           const auto reply = say(Verb::kEnable);
-           return reply && reply->is_accepted;
-         }) &&
-         wait_for(State::kReady);
+  return eventually(
+             [this] {
+               std::this_thread::sleep_for(milliseconds(20));
+               const auto reply = say(Verb::kEnable);
+               return reply && reply->is_accepted;
+             },
+             kPatience) &&
+         wait_for(State::kReady, kPatience);
 }
 
 bool Plant::stream(const std::vector<ClBlock>& blocks,
