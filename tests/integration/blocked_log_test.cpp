@@ -94,7 +94,7 @@ TEST(BlockedLog, IsNotWaitedForAtTheEnd) {
   plant.start_service({"--service", service_file(plant)});
   ASSERT_TRUE(eventually([&] { return plant.status().state == State::kOff; }));
   plant.service().send_signal(SIGTERM);
-  EXPECT_EQ(plant.service().wait(milliseconds(15000)), 0);
+  EXPECT_EQ(plant.service().wait(milliseconds(4000)), 0);
 }
 
 TEST(BlockedLog, HoldsUpNoDrivesFromTheirBeginToTheirEnd) {
@@ -104,7 +104,7 @@ TEST(BlockedLog, HoldsUpNoDrivesFromTheirBeginToTheirEnd) {
   plant.start_drives();
   ASSERT_TRUE(plant.enable()) << plant.standing();
   plant.drives().send_signal(SIGTERM);
-  EXPECT_EQ(plant.drives().wait(milliseconds(15000)), 0);
+  EXPECT_EQ(plant.drives().wait(milliseconds(4000)), 0);
 }
 
 TEST(BlockedLog, KeepsNoWatcherAlive) {
@@ -116,7 +116,7 @@ TEST(BlockedLog, KeepsNoWatcherAlive) {
                   plant.folder() / "watch.log");
   std::this_thread::sleep_for(milliseconds(3000));
   watcher.send_signal(SIGTERM);
-  EXPECT_EQ(watcher.wait(milliseconds(15000)), 0);
+  EXPECT_EQ(watcher.wait(milliseconds(4000)), 0);
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ void LegFeed::set_cells(const Leg& leg, std::span<const JointCell> cells) noexce
   double whole = 0;
   for (const JointCell& cell : cells) whole += time_over(leg, cell);
   const double step = std::clamp(kCell_s, whole / kMaxFeedCells, whole / kMinLegCells);
-  // Ends by time: growing up to a step (five of it in all), evenly, and shrinking again.
+  // Ends by time: growing up to a step, over five steps at most, evenly, and shrinking again.
   ends_.clear();
   double ramp = 0;
   for (double by = kCell_s; by < step && ends_.size() < kMaxGrowing; by *= kCellGrowth) {

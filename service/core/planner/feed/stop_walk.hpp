@@ -41,16 +41,16 @@ class StopWalk {
   }
 
   /// Whether it is nowhere faster than `next` from where that begins: a stop of the same plan under
-  /// the same authority, from `duration` later. Neither was begun to walk.
+  /// the same authority, from `duration` later. Neither may have entered a cell yet.
   ///
-  /// Where both have the same s and speed the later one decelerates no harder, so no stop comes
-  /// from below another: if it arrives slower, and with no more acceleration, it stays below. Of
-  /// one that arrives on the last of its three phases the speed alone says so, as no stop at that
-  /// speed decelerates harder than there. (Not where a plan is about to end by itself, as the jerk
-  /// of its stop is another one.)
+  /// It arrives there slower and with no more acceleration, and comes later to every s behind. So
+  /// at the same s and speed it would have less acceleration, which lets no stop come from below.
+  /// If it arrives on its last phase, its speed alone is enough: at that speed no stop decelerates
+  /// harder. Not where one of them eases off from a harder deceleration than `accel`, or ends the
+  /// plan's own braking with another jerk: there acceleration does not fall first.
   [[nodiscard]] bool stays_below(const StopWalk& next, double duration) const noexcept {
     const PathState& begin = next.from_;
-    if (ends_by_itself(from_) || ends_by_itself(begin)) return false;
+    if (lets_go_at_once(from_) || lets_go_at_once(begin)) return false;
     const PathState at = law_.at(duration);
     const double fastest = at.dds > 0 ? peak_of(at) : at.ds;
     return at.s <= begin.s && fastest <= begin.ds && (at.dds <= begin.dds || is_in_last_phase(at));
@@ -85,9 +85,10 @@ class StopWalk {
   static constexpr double kRounding_mm = 1e-9;
   static constexpr double kRounding = 1e-6;  ///< far above that of ṡ² between the three phases
 
-  /// Whether the speed is gone before the deceleration is.
-  [[nodiscard]] bool ends_by_itself(const PathState& p) const noexcept {
-    return p.dds < 0 && p.dds * p.dds >= 2 * authority_.jerk * p.ds;
+  /// Whether a stop from there lets go of its deceleration at once: more of it is not allowed, or
+  /// the speed would be gone before it is.
+  [[nodiscard]] bool lets_go_at_once(const PathState& p) const noexcept {
+    return -p.dds > authority_.accel || (p.dds < 0 && p.dds * p.dds >= 2 * authority_.jerk * p.ds);
   }
   [[nodiscard]] bool is_in_last_phase(const PathState& p) const noexcept {
     return p.dds < 0 && p.dds * p.dds >= 2 * (1 - kRounding) * authority_.jerk * p.ds;

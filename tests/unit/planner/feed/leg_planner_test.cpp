@@ -65,15 +65,8 @@ TEST(LegPlanner, CutsALegThatPassesBesideThePole) {
     EXPECT_LE(tip_speed_of(*one.staged), 50);
     EXPECT_LE(use_of_stops(one.model, *one.staged, false).worst(), 1 + 1e-6);
     EXPECT_LE(use_of_stops(one.model, *one.staged, true).worst(), 1 + 1e-6);
-    // Every piece begins where the one before it ends, and C turns by nearly half a turn.
-    JointVector before = one.start;
-    for (int n = 0; n < one.staged->path_count; ++n) {
-      const PathPiece& path = one.staged->paths[n];
-      EXPECT_EQ(path.index, 100U + static_cast<unsigned>(n));
-      for (int i = 0; i < 5; ++i) EXPECT_NEAR(path.joints_begin[i], before[i], 1e-7);
-      before = path.joints_end;
-    }
-    EXPECT_EQ(before, one.joints);
+    expect_joined(one);
+    // C turns by nearly half a turn.
     EXPECT_NEAR(std::abs(one.joints[3] - one.start[3]), std::numbers::pi - 2 * beside / 0.15,
                 0.02 * beside / 0.15 + 1e-3);
     // C turns at 60 deg/s at most: that is the least time.

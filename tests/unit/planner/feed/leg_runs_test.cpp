@@ -56,14 +56,7 @@ TEST(LegRuns, LeadPastThePoleAtAnyDistanceInsideEveryLimit) {
                 1e-6);
     EXPECT_GT(duration_of(*one.staged), fastest_turn_s(turn));
     EXPECT_LT(duration_of(*one.staged), a.longest_s);
-    JointVector before = one.start;
-    for (int n = 0; n < one.staged->path_count; ++n) {
-      const PathPiece& path = one.staged->paths[n];
-      EXPECT_EQ(path.index, 100U + static_cast<unsigned>(n));
-      for (int i = 0; i < 5; ++i) EXPECT_NEAR(path.joints_begin[i], before[i], 1e-7);
-      before = path.joints_end;
-    }
-    EXPECT_EQ(before, one.joints);
+    expect_joined(one);
   }
 }
 

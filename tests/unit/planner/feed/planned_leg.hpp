@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <memory>
 
@@ -39,5 +41,17 @@ struct Planned {
   std::unique_ptr<Staging> staged = std::make_unique<Staging>();
   JointVector start{}, joints{};
 };
+
+/// Every piece of the leg begins where the one before it ends, the last one where the joints are.
+inline void expect_joined(const Planned& one) {
+  JointVector before = one.start;
+  for (int n = 0; n < one.staged->path_count; ++n) {
+    const PathPiece& path = one.staged->paths[n];
+    EXPECT_EQ(path.index, 100U + static_cast<unsigned>(n));
+    for (int i = 0; i < 5; ++i) EXPECT_NEAR(path.joints_begin[i], before[i], 1e-7);
+    before = path.joints_end;
+  }
+  EXPECT_EQ(before, one.joints);
+}
 
 }  // namespace meridian::test::leg_planner

@@ -112,6 +112,17 @@ TEST(StopWalk, StaysBelowNoStopOfAPlanThatBrakesHarder) {
   EXPECT_FALSE(first.stays_below(next, 0.01));
 }
 
+TEST(StopWalk, StaysBelowNoneWhereOneOfThemLetsGoAtOnce) {
+  // Slower and decelerating harder, but 1100 mm/s² are more than it may use.
+  const StopMargin authority{1000, 30000};
+  const StopWalk letting_go({0, 50, -1100, 0}, authority);
+  const StopWalk next({0.5, 48, 0, 0}, authority);
+  EXPECT_FALSE(letting_go.stays_below(next, 0.01));
+  EXPECT_TRUE(StopWalk({0, 50, -900, 0}, authority).stays_below(next, 0.01));
+  const StopWalk later({0.5, 48, -1100, 0}, authority);
+  EXPECT_FALSE(StopWalk({0, 47, -999, 0}, authority).stays_below(later, 0.01));
+}
+
 TEST(StopWalk, StandsForAnotherStopToo) {
   StopWalk walk({0, 50, 0, 0}, {2000, 40000});
   const double own = walk.largest_product();
