@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "attack/samples.hpp"
 
@@ -13,6 +14,8 @@ namespace {
 constexpr std::uint8_t kOff = 0, kReady = 2, kFaultStop = 12, kFault = 13;
 constexpr std::int64_t kSettle_ns = 300'000'000;  ///< the shafts' own lag behind the last setpoint
 constexpr std::int64_t kSwitchOff_ns = 300'000'000;
+constexpr std::int64_t kSwitchOn_ns =
+    100'000'000;  ///< from drives that are on to the status that says so
 constexpr std::size_t kCruise = 40;
 constexpr double kSteady = 5e-5, kSlower = 2e-4;  ///< of the speed
 constexpr std::uint16_t kOperationEnabled = 0x27, kStateMask = 0x6f, kEnableOperation = 0x0f;
@@ -108,10 +111,13 @@ void Observer::take_status() {
     }
     const bool is_new = sample.state != status_.state || sample.service_id != status_.service_id;
     if (is_new) end_rest(sample.state);
-    if (!is_new) account_.enabled_at_rest += enabled_;
-    enabled_ = 0;  // drives that are switched on are ahead of the status that says so
-    status_ = sample;
     status_ns_ = monotonic_ns();
+    if (is_new) {
+      enabled_ = 0;  // drives that are switched on are ahead of the status that says so
+    } else if (enabled_ > 0 && status_ns_ - enabled_since_ns_ > kSwitchOn_ns) {
+      account_.enabled_at_rest += std::exchange(enabled_, 0);
+    }
+    status_ = sample;
     if (is_new) rest_since_ns_ = status_ns_;
   }
 }
@@ -151,7 +157,7 @@ void Observer::rest(const meridian_wire_Feedback& feedback) {
     const bool is_enabled =
         std::any_of(std::begin(feedback.statusword), std::end(feedback.statusword),
                     [](std::uint16_t word) { return (word & kStateMask) == kOperationEnabled; });
-    enabled_ += is_enabled ? 1 : 0;
+    if (is_enabled && enabled_++ == 0) enabled_since_ns_ = monotonic_ns();
   }
   if (!has_base_) {
     if (since_ns < kSettle_ns) return;

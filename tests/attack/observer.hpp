@@ -88,7 +88,8 @@ class Observer {
 
   std::int64_t rest_since_ns_ = 0;
   bool has_base_ = false;
-  std::uint64_t enabled_ = 0;  ///< reports of a drive that is on, since the last status
+  std::uint64_t enabled_ = 0;          ///< reports of a drive that is on, not counted yet
+  std::int64_t enabled_since_ns_ = 0;  ///< the first of them
   std::array<double, 6> base_{}, largest_{};
   Account account_;
 };
