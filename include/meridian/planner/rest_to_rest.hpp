@@ -40,8 +40,8 @@ inline constexpr double kPoleDeviation_rad = 8e-6;
 /// The plain planner: every block from rest to rest, tip on its line or arc, axis on its great
 /// circle, every joint inside its limits at every override, feed never exceeded.
 ///
-/// Where the redundant joint would leave its travel on the way and the machine's file says how, the
-/// machine goes to another winding or branch ahead of the block, off the part
+/// Where a joint would leave its travel in a block, another winding or branch keeps it inside and
+/// the machine's file says how, the machine goes there ahead of the block, off the part
 /// (PlanResult::rewind).
 ///
 /// One window per block, without a tail: it ends at rest. The joints of the whole way between two
@@ -125,10 +125,10 @@ class RestToRestPlanner {
   void continue_at(const Junction& junction) noexcept;
 
   /// Rewinds off the part, where the tool rests, to the best winding or branch that `trial` lets
-  /// pass: in `block` the redundant joint would come to `beyond`, outside travel. Refused where
-  /// none does, or where the tool cannot leave the part. kNoRoom as for plan().
-  [[nodiscard]] PlanResult rewind(const ClBlock& block, double beyond, const RewindTrial& trial,
-                                  MotionWriter& writer) noexcept;
+  /// pass: in `block` a joint would come to `end`, outside travel. Refused where none does, or
+  /// where the tool cannot leave the part. kNoRoom as for plan().
+  [[nodiscard]] PlanResult rewind(const ClBlock& block, const TravelEnd& end,
+                                  const RewindTrial& trial, MotionWriter& writer) noexcept;
 
   /// Joints and tool length at the end of what was published.
   [[nodiscard]] const JointVector& joints() const noexcept;

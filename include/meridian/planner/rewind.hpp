@@ -22,6 +22,13 @@ struct Rewind {
   [[nodiscard]] bool is_other_branch() const noexcept { return is_made() && turns == 0; }
 };
 
+/// Where a joint, or a drive of the stage, would leave its travel: its index in limited.hpp and the
+/// value, outside travel, that it would come to. Unit: mm or rad.
+struct TravelEnd {
+  int joint = -1;
+  double value = 0;
+};
+
 /// Where a rewind leads: another solution for the pose where the tool rests. Unit: rad.
 struct RewindTarget {
   JointVector joints{};

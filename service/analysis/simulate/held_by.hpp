@@ -43,7 +43,7 @@ enum class Cause : std::uint8_t {
   kRest,      ///< the motion sets off from a rest or comes to one
   kOverride,  ///< the operator: an override below what was planned, a hold, a resume
   kWaiting,   ///< at rest: dwell, action, stop, hold, or blocks that did not come
-  kRewind     ///< the redundant joint ran out of travel and is turned back off the part
+  kRewind     ///< a joint ran out of travel: C is turned back, or over the pole, off the part
 };
 inline constexpr std::size_t kCauses = 8;
 [[nodiscard]] const char* name_of(Cause cause) noexcept;

@@ -326,7 +326,7 @@ std::string describe(const Rewind& rewind) {
           ? fmt::format("{:+.3f} deg to the other branch", units::deg_from_rad(rewind.turn_rad))
           : fmt::format("{:+} turns", rewind.turns);
   return fmt::format(
-      "line {}: a rotary joint would leave its travel; the redundant joint turns by {} from {:.3f} "
+      "line {}: a joint would leave its travel; the redundant joint turns by {} from {:.3f} "
       "deg, {} mm off the part",
       rewind.line, by, units::deg_from_rad(rewind.from_rad), rewind.retract_mm);
 }

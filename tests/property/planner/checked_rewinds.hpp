@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "meridian/path/pose_at.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
 
@@ -15,9 +16,19 @@ namespace meridian::test::rewinds {
 
 inline constexpr double kLimit = 1 + 1e-6;
 
+inline std::vector<MachineModel> machines_with_two_solutions() {
+  return {limited(lai_machine(), -720, 720), limited(trunnion_machine(), -720, 720),
+          limited(fork_machine(), -720, 720)};
+}
+
+/// In degrees round a cone.
+constexpr double step_of(Transition transition) {
+  return transition == Transition::kSmooth ? 4 : 20;
+}
+
 /// A rewind while its setpoints come: where the tool left, and how far it was off the part.
 struct OpenRewind {
-  JointVector rest{};
+  JointVector rest{};  ///< up to a cycle ahead of it
   ToolPose begin{Vector3::Zero(), Vector3::UnitZ()};
   double farthest = 0;
 };
@@ -39,7 +50,8 @@ inline void check_turn_on_branch(const MachineModel& model, OpenRewind& open,
     return;
   }
   open.farthest = std::max(open.farthest, off);
-  EXPECT_LT((pose.tip - open.begin.tip - off * open.begin.axis).norm(), 2e-3);
+  constexpr double kLastTurn_mm = 4e-3;  // of C by 1e-5 rad, 400 mm off its axis
+  EXPECT_LT((pose.tip - open.begin.tip - off * open.begin.axis).norm(), kLastTurn_mm);
   EXPECT_LT(angle_between(pose.axis, open.begin.axis), 1e-4);
   EXPECT_GT(off, -1e-3);
 }
@@ -90,7 +102,7 @@ inline int check_rewinds(const MachineModel& model, const SmoothTrace& trace,
     const bool is_in =
         trace.times[k].kind == TimeKind::kMove && trace.paths[k].motion == MotionKind::kRewind;
     if (is_in && !was_in) {
-      open = {before, forward(model, model.tool_length_mm, before), 0};
+      open = {before, pose_at(trace.paths[k], 0.0), 0};
       if (++count > trace.rewinds.size()) return static_cast<int>(count);
     }
     if (is_in && trace.rewinds[count - 1].is_other_branch()) {

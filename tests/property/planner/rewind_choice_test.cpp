@@ -76,15 +76,6 @@ Case one_sided(Case one) {
   return one;
 }
 
-std::vector<MachineModel> machines_with_two_solutions() {
-  return {limited(lai_machine(), -720, 720), limited(trunnion_machine(), -720, 720),
-          limited(fork_machine(), -720, 720)};
-}
-
-constexpr double step_of(Transition transition) {
-  return transition == Transition::kSmooth ? 4 : 20;
-}
-
 SmoothTrace checked_plan(const Case& one, Transition transition) {
   Found found;
   SmoothTrace trace = plan_smooth(one.model, one.blocks, one.start, {transition, 0, 0});

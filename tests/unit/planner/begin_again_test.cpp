@@ -62,7 +62,7 @@ TEST(RestToRestPlanner, TurnsTheRedundantJointBackToTheBestWindingThatFitsWhatFo
   planner.begin(joints, model.tool_length_mm, 1);
   ClBlock block;
   block.sequence = 7;
-  const PlanResult result = planner.rewind(block, 13, FarTurn{}, writer);
+  const PlanResult result = planner.rewind(block, {3, 13}, FarTurn{}, writer);
   EXPECT_EQ(result.status, PlanStatus::kOk);
   EXPECT_EQ(result.rewind.turns, -3) << "no block is known, and there is the most room";
   EXPECT_NEAR(planner.joints()[3], 12 - 3 * kTurn_rad, 1e-12);

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <string>
 
+#include "meridian/kinematics/kinematics.hpp"
 #include "service/analysis/simulate/explainer.hpp"
 #include "support/machines.hpp"
 #include "support/scratch.hpp"
@@ -31,15 +32,16 @@ MachineModel short_travel() {
   return model;
 }
 
-/// Turns round a cone, 3 deg a block.
-std::string spiral(int blocks) {
+/// Turns round a cone, 3 deg a block. Behind the first 30 blocks it leans by `lean` more a block.
+std::string spiral(int blocks, double lean = 0) {
   std::string text = "UNITS/MM\nMULTAX/ON\nFEDRAT/3000,MMPM\n";
   for (int n = 0; n <= blocks; ++n) {
     const double azimuth = units::rad_from_deg(3.0 * n);
+    const double tilt = 0.4 + lean * std::max(0, n - 30);
     char line[160];
     std::snprintf(line, sizeof line, "GOTO/%.6f,%.6f,%.6f,%.9f,%.9f,%.9f\n", 20 * std::cos(azimuth),
-                  20 * std::sin(azimuth), 30 - 0.01 * n, std::sin(0.4) * std::cos(azimuth),
-                  std::sin(0.4) * std::sin(azimuth), std::cos(0.4));
+                  20 * std::sin(azimuth), 30 - 0.01 * n, std::sin(tilt) * std::cos(azimuth),
+                  std::sin(tilt) * std::sin(azimuth), std::cos(tilt));
     text += line;
   }
   return text + "FINI\n";
@@ -132,6 +134,32 @@ TEST_P(SimulatedRewind, ToTheOtherBranchIsFoundOutWhereItIsNoneOfTheDeclaredKind
   EXPECT_TRUE(has(check(astray), Finding::Kind::kRewind)) << "the axis leaves the way to the pole";
   model.rewind_retract_mm = 25;
   EXPECT_TRUE(has(check(run.records), Finding::Kind::kRewind)) << "not off as far as declared";
+}
+
+/// One branch has no C for the begin, the other no tilt for the end.
+TEST_P(SimulatedRewind, ForTheTiltNamesItAndPassesTheCheck) {
+  text = spiral(40, 0.02);
+  const auto at = [&](double azimuth) {
+    const Vector3 tip(20 * std::cos(azimuth), 20 * std::sin(azimuth), 30);
+    const Vector3 axis(std::sin(0.4) * std::cos(azimuth), std::sin(0.4) * std::sin(azimuth),
+                       std::cos(0.4));
+    return solve(model, model.tool_length_mm, ToolPose{tip, axis}, 0, JointVector{}).q;
+  };
+  const JointVector begin = at(0);
+  const bool is_up = at(0.1)[kC] > begin[kC], is_tilt_up = begin[kTilt] > 0;
+  JointLimits& c = model.joints[kC].limits;
+  c.travel_max = begin[kC] + units::rad_from_deg(is_up ? 150 : 140);
+  c.travel_min = c.travel_max - units::rad_from_deg(290);
+  JointLimits& tilt = model.joints[kTilt].limits;
+  tilt.travel_max = is_tilt_up ? 0.5 : 1;
+  tilt.travel_min = is_tilt_up ? -1 : -0.5;
+  const test::SimulatedRun run = test::run_simulation(text, model);
+  ASSERT_EQ(run.report.outcome, Outcome::kDone) << run.report.reason;
+  ASSERT_EQ(run.report.rewinds.size(), 1U);
+  EXPECT_TRUE(run.report.rewinds[0].is_other_branch());
+  const std::string says = model.joints[kTilt].name + " would leave its travel";
+  EXPECT_NE(to_text(run.report, model).find(says), std::string::npos);
+  EXPECT_TRUE(check(run.records).passed()) << to_text(check(run.records));
 }
 
 /// A wire that lost two rows in the very moment in which the tool leaves, and where it comes back.

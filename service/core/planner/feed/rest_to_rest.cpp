@@ -94,13 +94,13 @@ void RestToRestPlanner::look_at(std::span<const ClBlock> ahead, double tip_slack
   workspace_->router.look_at(ahead, {tip_slack_mm, axis_slack_rad});
 }
 
-PlanResult RestToRestPlanner::rewind(const ClBlock& block, double beyond, const RewindTrial& trial,
-                                     MotionWriter& writer) noexcept {
+PlanResult RestToRestPlanner::rewind(const ClBlock& block, const TravelEnd& end,
+                                     const RewindTrial& trial, MotionWriter& writer) noexcept {
   Workspace& w = *workspace_;
   if (w.stage_state == Workspace::Stage::kRefused) return w.result;
   if (w.stage_state != Workspace::Stage::kWhole) {
     w.clear_stage();
-    PathFault fault{PathFault::Kind::kTravel, redundant_joint(w.model), beyond};
+    PathFault fault{PathFault::Kind::kTravel, end.joint, end.value};
     if (w.may_rewind(fault)) fault = w.rewind(block, fault, &trial);
     if (w.stage_state == Workspace::Stage::kNeedsAhead) return {PlanStatus::kNoRoom, {}, 0, {}};
     if (fault.kind != PathFault::Kind::kNone) {

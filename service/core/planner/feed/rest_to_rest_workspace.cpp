@@ -44,7 +44,7 @@ bool is_finite(const ClBlock& block) noexcept {
 
 bool RestToRestPlanner::Workspace::may_rewind(const PathFault& fault) const noexcept {
   return model.rewind_policy == RewindPolicy::kRetract && fault.kind == PathFault::Kind::kTravel &&
-         fault.joint >= 0 && fault.joint == redundant_joint(model);
+         fault.joint >= 0 && redundant_joint(model) >= 0;
 }
 
 PathFault RestToRestPlanner::Workspace::rewind(const ClBlock& block, const PathFault& fault,
@@ -93,6 +93,8 @@ PathFault RestToRestPlanner::Workspace::route_or_rewind(const ClBlock& block) no
   const Staging::Mark before = staging.mark();
   const PathFault fault = route(block);
   if (stage_state == Stage::kNeedsAhead || !may_rewind(fault)) return fault;
+  const bool needs_branch = fault.joint != redundant_joint(model);
+  if (needs_branch && !router.is_reachable(block, rest)) return fault;
   staging.go_back(before);
   next = rest;
   return rewind(block, fault, nullptr);

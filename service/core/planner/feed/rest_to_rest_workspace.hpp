@@ -59,7 +59,7 @@ struct RestToRestPlanner::Workspace {
   void stage_as_programmed(const ClBlock& block) noexcept;
   void stage_barrier(const ClBlock& block) noexcept;
   void stage_retraction(const ClBlock& block) noexcept;
-  /// Whether `fault` is one that turning the redundant joint back may help.
+  /// Whether `fault` is one that another winding or branch may help.
   [[nodiscard]] bool may_rewind(const PathFault& fault) const noexcept;
   /// Stages a rewind from `next`, to a solution that `trial` lets pass, or without one with `block`
   /// behind it. Without one it returns `fault`, that of the block. Where blocks are

@@ -47,9 +47,7 @@ void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
                  pole_tolerance_rad, tolerance.tip_mm});
   begin_feed(start.branch);
   ends_.clear();
-  const int free = redundant_joint(model_);
-  follows_free_ = model_.rewind_policy == RewindPolicy::kRetract && free >= 0 &&
-                  !model_.joints[free].is_endless;
+  may_rewind_ = model_.rewind_policy == RewindPolicy::kRetract && redundant_joint(model_) >= 0;
   relaxed_axis_.reset();
   is_band_finished_ = false;
   fault_ = {};
@@ -174,7 +172,7 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
 }
 
 bool SmoothRun::take_span(const JointSpan& span, double feed_override) noexcept {
-  if (!follows_free_ || follow(span)) {
+  if (!may_rewind_ || follow(span)) {
     note_relaxed_axis(&span);
     push(span, feed_override);
     if (supply_ == Supply::kRewound) supply_ = Supply::kFlowing;
@@ -237,8 +235,8 @@ void SmoothRun::mark_block_ends(JointSpan& span) noexcept {
 bool SmoothRun::follow(const JointSpan& span) noexcept {
   const auto outside = travel_.follow(span);
   if (outside) {
-    rewind_at_ = {span.band.sequence, span.band.line, RejectCode::kTravelBetween,
-                  redundant_joint(model_), *outside};
+    rewind_at_ = {span.band.sequence, span.band.line, RejectCode::kTravelBetween, outside->joint,
+                  outside->value};
   }
   return !outside;
 }

@@ -16,7 +16,7 @@
 #include "service/core/planner/feed/feed_raise.hpp"
 #include "service/core/planner/feed/feed_stop_margin.hpp"
 #include "service/core/planner/feed/rolling_feed.hpp"
-#include "service/core/planner/route/free_travel.hpp"
+#include "service/core/planner/route/span_travel.hpp"
 #include "service/core/planner/singular/pole_corridor.hpp"
 #include "service/core/planner/singular/robot_passes.hpp"
 
@@ -78,7 +78,7 @@ class SmoothRun : public RewindTrial {
   /// The block that the fault is on; its code is left to the caller.
   [[nodiscard]] const BlockReject& faulty_block() const noexcept { return faulty_block_; }
 
-  /// Where the redundant joint runs out of travel: the block, and `value` outside travel.
+  /// Where a joint runs out of travel: the block, the joint, and `value` outside travel.
   [[nodiscard]] const BlockReject& rewind_at() const noexcept { return rewind_at_; }
   /// Behind kRewind: whether the span that would have left travel fits after a rewind to `target`,
   /// with the rest of a zone that it lies in.
@@ -128,7 +128,7 @@ class SmoothRun : public RewindTrial {
   void note_block_ends() noexcept;
   /// Marks the ends of blocks on `span`, the next one.
   void mark_block_ends(JointSpan& span) noexcept;
-  /// Follows the redundant joint over `span`, the next one. False: it would leave its travel, and
+  /// Follows the joints over `span`, the next one. False: one would leave its travel, and
   /// rewind_at() names where; nothing is followed then.
   [[nodiscard]] bool follow(const JointSpan& span) noexcept;
   /// Whether the feed knows its end.
@@ -162,7 +162,7 @@ class SmoothRun : public RewindTrial {
   RobotPasses passes_;
   RollingFeed feed_;
   FeedStopMargin stop_margin_;
-  FreeTravel travel_;
+  SpanTravel travel_;
   IndexRing<JointSpan> spans_;  ///< by number, as far back as a window may go
   IndexRing<BlockEnd> ends_;    ///< of blocks, that no span is marked with yet
   RunStart start_;
@@ -172,7 +172,7 @@ class SmoothRun : public RewindTrial {
   std::array<OpenWindow, MotionReader::kRemembered + 2> open_;
   bool has_window_ = false;  ///< feed_.window() waits for room
   bool is_band_finished_ = false;
-  bool follows_free_ = false;  ///< the redundant joint has travel and may be turned back
+  bool may_rewind_ = false;  ///< to another winding or branch
   Supply supply_ = Supply::kFlowing;
   JointSpan held_;
   BlockReject rewind_at_;

@@ -171,7 +171,7 @@ bool SmoothPlanner::Workspace::rewind(MotionWriter& writer) noexcept {
   ClBlock block;
   block.sequence = where.sequence;
   block.line = where.line;
-  const PlanResult result = plain.rewind(block, where.value, run, writer);
+  const PlanResult result = plain.rewind(block, {where.joint, where.value}, run, writer);
   if (result.status == PlanStatus::kRefused) refuse(result);
   if (result.status != PlanStatus::kOk) return false;
   note(result.rewind);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "meridian/kinematics/travel.hpp"
 #include "meridian/kinematics/winding.hpp"
 
 namespace meridian {
@@ -22,6 +23,15 @@ void RewindSolutions::sort() noexcept {
       std::swap(solutions_[k], solutions_[k - 1]);
     }
   }
+}
+
+std::optional<JointVector> solve_other_branch(const MachineModel& model, double tool_length_mm,
+                                              const ToolPose& pose, int branch,
+                                              const JointVector& near) noexcept {
+  auto other = solve(model, tool_length_mm, pose, branch == 0 ? 1 : 0, near);
+  if (other.status != SolveStatus::kOk) return {};
+  wind_into_travel(model, near, other.q);
+  return other.q;
 }
 
 double room_of(const JointLimits& limits, double at, bool is_upwards) noexcept {

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 
+#include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/planner/rewind.hpp"
 #include "service/core/planner/route/route_ahead.hpp"
@@ -37,6 +39,14 @@ class RewindSolutions {
   std::array<RewindSolution, kMax> solutions_{};
   std::size_t count_ = 0;
 };
+
+/// The joints of `pose` on the branch that `branch` is not, with windings inside travel near
+/// `near`; nothing where it has no solution there. The machine has a redundant joint. Units: mm,
+/// rad.
+[[nodiscard]] std::optional<JointVector> solve_other_branch(const MachineModel& model,
+                                                            double tool_length_mm,
+                                                            const ToolPose& pose, int branch,
+                                                            const JointVector& near) noexcept;
 
 /// What a joint at `at` that runs out of travel upwards (or not) has left that way. A path that
 /// swings back would end at once where less than half a turn is left behind: less than 0 there, the

@@ -12,7 +12,7 @@ enum class RouteEnd : std::uint8_t {
   kNone,     ///< all is inside travel
   kDoubt,    ///< something is outside, by no more than rounding inside the slack may make of it or
              ///< on a branch that is not certain, or is at a box
-  kRewinds,  ///< the redundant joint runs out of travel, and a rewind may help there
+  kRewinds,  ///< a joint runs out of travel, and a rewind may help there
   kLost      ///< something leaves its travel for certain: the program cannot be cut this way
 };
 

@@ -15,6 +15,7 @@
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
 #include "service/core/planner/feed/joint_cells.hpp"
+#include "service/core/planner/route/rewind_solutions.hpp"
 #include "service/core/planner/singular/pole_bounds.hpp"
 
 namespace meridian {
@@ -136,13 +137,11 @@ void RouteFollower::check(const ToolPose& pose, RouteAhead& route) const noexcep
 }
 
 bool RouteFollower::may_rewind(int joint, const ToolPose& pose) const noexcept {
-  if (model_.rewind_policy != RewindPolicy::kRetract || joint != free_) return false;
+  if (model_.rewind_policy != RewindPolicy::kRetract) return false;
   const JointLimits& limits = model_.joints[free_].limits;
-  if (limits.travel_max - limits.travel_min >= kTurn_rad) return true;
-  auto other = solve(model_, tool_length_mm_, pose, branch_ == 0 ? 1 : 0, joints_);
-  if (other.status != SolveStatus::kOk) return false;
-  wind_into_travel(model_, joints_, other.q);
-  return first_outside(other.q) < 0;
+  if (joint == free_ && limits.travel_max - limits.travel_min >= kTurn_rad) return true;
+  const auto other = solve_other_branch(model_, tool_length_mm_, pose, branch_, joints_);
+  return other && first_outside(*other) < 0;
 }
 
 bool RouteFollower::is_at_box(const JointVector& all) const noexcept {

@@ -124,7 +124,7 @@ TEST(RouteFollower, LosesAWayForCertainWhereNoRewindHelps) {
 
 TEST(RouteFollower, IsInDoubtAsFarAsTipAndAxisMayMoveTheJoint) {
   for (const LookAheadSlack& slack : {LookAheadSlack{0.2, 0}, LookAheadSlack{0, 1e-3}}) {
-    Followed one(machine(), 0, slack);
+    Followed one(machine(RewindPolicy::kRefuse), 0, slack);
     const ToolPose end{{13, 7, 0}, tilted(0.3, 0.9)};
     const auto slide_at = [&](const ToolPose& pose) {
       return solve(one.model, one.model.tool_length_mm, pose, 0, one.joints).q[0];
@@ -143,7 +143,7 @@ TEST(RouteFollower, IsInDoubtAsFarAsTipAndAxisMayMoveTheJoint) {
     }
     ASSERT_GT(spread, 1e-3);
     for (const double share : {0.97, 1.03}) {
-      Followed other(machine(), 0, slack);
+      Followed other(machine(RewindPolicy::kRefuse), 0, slack);
       JointLimits& limits = other.model.joints[0].limits;
       const bool is_up = there > other.joints[0];
       (is_up ? limits.travel_max : limits.travel_min) = there + (is_up ? -share : share) * spread;
@@ -154,6 +154,20 @@ TEST(RouteFollower, IsInDoubtAsFarAsTipAndAxisMayMoveTheJoint) {
       follower.follow(cut(end.tip, end.axis));
       EXPECT_EQ(other.routes[0].end, share < 1 ? RouteEnd::kDoubt : RouteEnd::kLost) << share;
     }
+  }
+}
+
+TEST(RouteFollower, MayRewindToTheOtherBranchWhereTheTiltLeavesItsTravel) {
+  for (const bool has_other : {true, false}) {
+    Followed one(machine());
+    JointLimits& tilt = one.model.joints[4].limits;
+    const bool is_up = one.joints[4] > 0;
+    (is_up ? tilt.travel_max : tilt.travel_min) = is_up ? 0.5 : -0.5;
+    (is_up ? tilt.travel_min : tilt.travel_max) = (has_other ? 1 : 0.5) * (is_up ? -1 : 1);
+    one.add(0);
+    RouteFollower follower(one.model, one.model.tool_length_mm, {}, 0, one.start, one.routes);
+    follower.follow(cut({0, 0, 0}, tilted(0.6, 0.4)));
+    EXPECT_EQ(one.routes[0].end, has_other ? RouteEnd::kRewinds : RouteEnd::kLost);
   }
 }
 

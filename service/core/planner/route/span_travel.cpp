@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/route/free_travel.hpp"
+#include "service/core/planner/route/span_travel.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/kinematics/limited.hpp"
+#include "meridian/kinematics/travel.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "service/core/planner/feed/joint_cells.hpp"
+#include "service/core/planner/route/rewind_solutions.hpp"
 #include "service/core/planner/singular/pole_bounds.hpp"
 
 namespace meridian {
@@ -19,13 +22,13 @@ constexpr double kMinShare = 1e-6;
 
 }  // namespace
 
-JointVector FreeTravel::turned(double by) const noexcept {
+JointVector SpanTravel::turned(double by) const noexcept {
   JointVector joints = at_;
   joints[redundant_joint(model_)] += by;
   return joints;
 }
 
-FreeTravel::Walk FreeTravel::walk(const JointSpan& span, const JointVector& joints,
+SpanTravel::Walk SpanTravel::walk(const JointSpan& span, const JointVector& joints,
                                   double by) const noexcept {
   const int free = redundant_joint(model_);
   const double length = span.band.length;
@@ -49,7 +52,7 @@ FreeTravel::Walk FreeTravel::walk(const JointSpan& span, const JointVector& join
     }
     const double slope = turn / (next - x);
     if (x > 0) bend = std::max(bend, std::abs(slope - last_slope) * std::max(step, last_step));
-    walked.is_inside &= first_joint_outside_travel(model_, there.q, kTravelMargin) < 0;
+    note_outside(next, there.q, walked);
     walked.low = std::min(walked.low, there.q[free]);
     walked.high = std::max(walked.high, there.q[free]);
     walked.end = there.q;
@@ -62,30 +65,56 @@ FreeTravel::Walk FreeTravel::walk(const JointSpan& span, const JointVector& join
   return walked;
 }
 
-std::optional<double> FreeTravel::find_outside(const Walk& walked) const noexcept {
-  const JointLimits& limits = model_.joints[redundant_joint(model_)].limits;
+void SpanTravel::note_outside(double x, const JointVector& joints, Walk& walked) const noexcept {
+  if (!walked.is_inside()) return;
+  const int joint = first_joint_outside_travel(model_, joints, kTravelMargin);
+  if (joint < 0) return;
+  walked.outside = {joint, limited_value(model_, joints, joint)};
+  walked.outside_x = x;
+  walked.outside_at = joints;
+}
+
+std::optional<TravelEnd> SpanTravel::find_outside(const Walk& walked) const noexcept {
+  const int free = redundant_joint(model_);
+  if (model_.joints[free].is_endless) return {};
+  const JointLimits& limits = model_.joints[free].limits;
   const double high = walked.high + walked.margin, low = walked.low - walked.margin;
-  if (walked.high > walked.begin + kNoMotion_rad && high > limits.travel_max) return high;
-  if (walked.low < walked.begin - kNoMotion_rad && low < limits.travel_min) return low;
+  if (walked.high > walked.begin + kNoMotion_rad && high > limits.travel_max) {
+    return TravelEnd{free, high};
+  }
+  if (walked.low < walked.begin - kNoMotion_rad && low < limits.travel_min) {
+    return TravelEnd{free, low};
+  }
   return {};
 }
 
-std::optional<double> FreeTravel::follow(const JointSpan& span) noexcept {
+bool SpanTravel::is_other_branch_inside(const JointSpan& span, const Walk& walked) const noexcept {
+  const bool is_kept_by_branch = !walked.is_inside() && !span.is_free_driven &&
+                                 walked.outside.joint != redundant_joint(model_);
+  if (!is_kept_by_branch) return false;
+  const ToolPose pose = pose_on(span.band.c, walked.outside_x);
+  const auto other =
+      solve_other_branch(model_, tool_length_mm_, pose, span.branch, walked.outside_at);
+  return other && first_joint_outside_travel(model_, *other, kTravelMargin) < 0;
+}
+
+std::optional<TravelEnd> SpanTravel::follow(const JointSpan& span) noexcept {
   const Walk walked = walk(span, at_, 0);
   if (!walked.is_there) return {};  // the feed finds it too
-  const auto outside = find_outside(walked);
-  if (!outside) at_ = walked.end;
-  return outside;
+  if (const auto outside = find_outside(walked)) return outside;
+  if (is_other_branch_inside(span, walked)) return walked.outside;
+  at_ = walked.end;
+  return {};
 }
 
-bool FreeTravel::fits(const JointSpan& span, double by) const noexcept {
+bool SpanTravel::fits(const JointSpan& span, double by) const noexcept {
   const Walk walked = walk(span, turned(by), by);
-  return walked.is_there && walked.is_inside && !find_outside(walked);
+  return walked.is_there && walked.is_inside() && !find_outside(walked);
 }
 
-bool FreeTravel::fits_from(const JointVector& joints, const JointSpan& span) const noexcept {
+bool SpanTravel::fits_from(const JointVector& joints, const JointSpan& span) const noexcept {
   const Walk walked = walk(span, joints, 0);
-  return walked.is_there && walked.is_inside && !find_outside(walked);
+  return walked.is_there && walked.is_inside() && !find_outside(walked);
 }
 
 }  // namespace meridian

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/route/free_travel.hpp"
+#include "service/core/planner/route/span_travel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "support/machines.hpp"
 #include "unit/planner/singular/leaning_path.hpp"
 
-namespace meridian::test::free_travel {
+namespace meridian::test::span_travel {
 namespace {
 
 /// Round the pole, 0.2 off it, by 0.1 rad per span.
@@ -44,7 +44,8 @@ struct Followed {
     begin[3] += by;
     travel.begin(begin, 100);
     for (std::size_t n = 0; n < spans.size(); ++n) {
-      if (const auto outside = travel.follow(spans[n])) return {static_cast<int>(n), *outside};
+      if (const auto outside = travel.follow(spans[n]))
+        return {static_cast<int>(n), outside->value};
     }
     return {-1, 0};
   }
@@ -53,10 +54,10 @@ struct Followed {
   MachineModel model = bench_machine();
   std::vector<JointSpan> spans;
   JointVector start{};
-  FreeTravel travel{model};
+  SpanTravel travel{model};
 };
 
-TEST(FreeTravel, FollowsTheJointOverEveryWinding) {
+TEST(SpanTravel, FollowsTheJointOverEveryWinding) {
   for (const int branch : {0, 1}) {
     Followed path(branch);
     EXPECT_EQ(path.follow().first, -1);
@@ -67,7 +68,7 @@ TEST(FreeTravel, FollowsTheJointOverEveryWinding) {
   }
 }
 
-TEST(FreeTravel, SaysWhereTheJointWouldComeToOutsideTravel) {
+TEST(SpanTravel, SaysWhereTheJointWouldComeToOutsideTravel) {
   Followed path;
   const double sense = path.joints_at(1, path.start)[3] > path.start[3] ? 1 : -1;
   const double begin = path.start[3];
@@ -78,7 +79,7 @@ TEST(FreeTravel, SaysWhereTheJointWouldComeToOutsideTravel) {
   EXPECT_NEAR(outside, begin + sense * 4.3, 2e-3) << "where that span ends";
 }
 
-TEST(FreeTravel, KeepsAMarginForWhatLiesBetweenItsPlaces) {
+TEST(SpanTravel, KeepsAMarginForWhatLiesBetweenItsPlaces) {
   Followed path;
   const double sense = path.joints_at(1, path.start)[3] > path.start[3] ? 1 : -1;
   const double begin = path.start[3];
@@ -93,14 +94,14 @@ TEST(FreeTravel, KeepsAMarginForWhatLiesBetweenItsPlaces) {
   EXPECT_EQ(travel_to(end + sense * 1e-2), 43) << "the next one";
 }
 
-TEST(FreeTravel, LetsAJointAtTheEndOfTravelLeaveIt) {
+TEST(SpanTravel, LetsAJointAtTheEndOfTravelLeaveIt) {
   Followed path;
   const double sense = path.joints_at(1, path.start)[3] > path.start[3] ? 1 : -1;
   path.set_travel(sense > 0 ? path.start[3] : -100, sense > 0 ? 100 : path.start[3]);
   EXPECT_EQ(path.follow().first, -1);
 }
 
-TEST(FreeTravel, SaysWhetherTheNextSpanFitsAnotherWinding) {
+TEST(SpanTravel, SaysWhetherTheNextSpanFitsAnotherWinding) {
   Followed path;
   path.travel.begin(path.start, 100);
   path.set_travel(path.start[3] - 7, path.start[3] + 7);
@@ -116,7 +117,7 @@ TEST(FreeTravel, SaysWhetherTheNextSpanFitsAnotherWinding) {
   EXPECT_FALSE(path.travel.fits(path.spans[0], 0)) << "every joint counts";
 }
 
-TEST(FreeTravel, FollowsAJointThatIsDriven) {
+TEST(SpanTravel, FollowsAJointThatIsDriven) {
   Followed path;
   for (std::size_t n = 0; n < path.spans.size(); ++n) {
     path.spans[n].is_free_driven = true;
@@ -134,7 +135,7 @@ TEST(FreeTravel, FollowsAJointThatIsDriven) {
   EXPECT_NEAR(path.travel.end_of(path.spans[0], 1)[3], path.start[3] + 1.02, 1e-12);
 }
 
-TEST(FreeTravel, LetsAJointLeaveTheEndOfTravelSlowly) {
+TEST(SpanTravel, LetsAJointLeaveTheEndOfTravelSlowly) {
   Followed path;
   const double sense = path.joints_at(1, path.start)[3] > path.start[3] ? 1 : -1;
   for (const double sign : {sense, -sense}) {
@@ -157,7 +158,7 @@ TEST(FreeTravel, LetsAJointLeaveTheEndOfTravelSlowly) {
   }
 }
 
-TEST(FreeTravel, LooksInsideOfASpanThatSwingsOutAndBack) {
+TEST(SpanTravel, LooksInsideOfASpanThatSwingsOutAndBack) {
   Followed path;
   JointSpan span;
   span.band = leaning_span(0, {0.2, 0}, {0.2, 0});
@@ -177,7 +178,7 @@ TEST(FreeTravel, LooksInsideOfASpanThatSwingsOutAndBack) {
   EXPECT_TRUE(fits_to(1.2));
 }
 
-TEST(FreeTravel, FollowsADrivenSpanOfAnyLength) {
+TEST(SpanTravel, FollowsADrivenSpanOfAnyLength) {
   Followed path;
   JointSpan span;
   span.band = leaning_span(0, {0.2, 0}, {0.2, 0.002});
@@ -188,7 +189,7 @@ TEST(FreeTravel, FollowsADrivenSpanOfAnyLength) {
   EXPECT_NEAR(path.travel.end_of(span, 0)[3], path.start[3] + 0.5, 1e-12);
 }
 
-TEST(FreeTravel, SaysWhetherTheNextSpanFitsFromOtherJoints) {
+TEST(SpanTravel, SaysWhetherTheNextSpanFitsFromOtherJoints) {
   Followed path;
   const JointVector other = solve(path.model, 100, pose_on(path.spans[0].band.c, 0.0), 1, {}).q;
   JointSpan span = path.spans[0];
@@ -206,7 +207,58 @@ TEST(FreeTravel, SaysWhetherTheNextSpanFitsFromOtherJoints) {
   EXPECT_FALSE(path.travel.fits_from(other, span)) << "the redundant joint is";
 }
 
-TEST(FreeTravel, SeesATurnBesideThePole) {
+/// Out along a meridian from 0.2 to 0.4 rad; the tilt has 0.3 on the side where it begins.
+struct LeaningOut {
+  LeaningOut() {
+    span.band = leaning_span(0, {0.2, 0}, {0.4, 0});
+    path.start = solve(path.model, 100, pose_on(span.band.c, 0.0), 0, {}).q;
+    is_up = path.start[4] > 0;
+    set_tilt(0.3, 1);
+    path.travel.begin(path.start, 100);
+  }
+  void set_tilt(double here, double there) {
+    JointLimits& tilt = path.model.joints[4].limits;
+    tilt.travel_max = is_up ? here : there;
+    tilt.travel_min = is_up ? -there : -here;
+  }
+
+  Followed path;
+  JointSpan span;
+  bool is_up = true;
+};
+
+TEST(SpanTravel, SaysWhereTheTiltLeavesItsTravelAndTheOtherBranchKeepsIt) {
+  LeaningOut one;
+  const auto outside = one.path.travel.follow(one.span);
+  ASSERT_TRUE(outside);
+  EXPECT_EQ(outside->joint, 4);
+  EXPECT_GT(std::abs(outside->value), 0.3);
+  EXPECT_LT(std::abs(outside->value), 0.4);
+}
+
+TEST(SpanTravel, LeavesATiltThatNoBranchKeepsToTheFeed) {
+  LeaningOut one;
+  one.set_tilt(0.3, 0.3);
+  EXPECT_FALSE(one.path.travel.follow(one.span)) << "the feed refuses it by name";
+}
+
+TEST(SpanTravel, LeavesADrivenSpanOnItsBranch) {
+  LeaningOut one;
+  one.span.is_free_driven = true;
+  one.span.free.fill(one.path.start[3]);
+  EXPECT_FALSE(one.path.travel.follow(one.span));
+}
+
+TEST(SpanTravel, LooksAtTheTiltWhereCIsEndless) {
+  LeaningOut one;
+  one.path.model.joints[3].is_endless = true;
+  one.path.set_travel(0, 0);
+  const auto outside = one.path.travel.follow(one.span);
+  ASSERT_TRUE(outside);
+  EXPECT_EQ(outside->joint, 4);
+}
+
+TEST(SpanTravel, SeesATurnBesideThePole) {
   // Past the pole at 0.001 in one span: half a turn.
   Followed path;
   JointSpan span;
@@ -220,4 +272,4 @@ TEST(FreeTravel, SeesATurnBesideThePole) {
 }
 
 }  // namespace
-}  // namespace meridian::test::free_travel
+}  // namespace meridian::test::span_travel
