@@ -22,21 +22,38 @@ template <class S>
   return (atan2(S(piece.pole_offset * sine), cosine) - piece.azimuth_from) / piece.axis_turn;
 }
 
+/// Returns the quartic with coefficients `c`, lowest first, at `x`, by Horner's rule. RT: cycle.
+template <class S>
+[[nodiscard]] inline S quartic_at(const std::array<double, 5>& c, const S& x) noexcept {
+  S sum = x * c[4] + c[3];
+  for (int k = 2; k >= 0; --k) sum = sum * x + c[k];
+  return sum;
+}
+
+/// The same, bit for bit, of a jet. Where it is the variable itself most of its products are by 0
+/// and 1.
+template <int N>
+[[nodiscard]] inline Jet<N> quartic_at(const std::array<double, 5>& c, const Jet<N>& x) noexcept {
+  bool is_variable = x.c[1] == 1;
+  for (int n = 2; n <= N; ++n) is_variable = is_variable && x.c[n] == 0;
+  if (!is_variable) return quartic_at<Jet<N>>(c, x);
+  Jet<N> sum = Jet<N>::with_derivative(x.c[0] * c[4] + c[3], c[4]);
+  for (int k = 2; k >= 0; --k) {
+    for (int n = N; n > 0; --n) sum.c[n] = sum.c[n - 1] + sum.c[n] * x.c[0];
+    sum.c[0] = sum.c[0] * x.c[0] + c[k];
+  }
+  return sum;
+}
+
 /// Returns tip and unit axis of `quartic` at `x`. Not defined where O is zero, which a band spline
 /// never is: O stays within the axis tolerance of a unit vector.
 /// RT: cycle. Source: docs/motion.md, section 1. Proof: tests/unit/path/pose_at_test.cpp.
 template <class S>
 [[nodiscard]] inline Pose<S> pose_on(const PoseQuartic& quartic, const S& x) noexcept {
   using std::sqrt;
-  const auto component = [&](int d) {
-    const std::array<double, 5>& c = quartic[d];
-    S sum = x * c[4] + c[3];
-    for (int k = 2; k >= 0; --k) sum = sum * x + c[k];
-    return sum;
-  };
   Pose<S> out;
-  for (int i = 0; i < 3; ++i) out.tip[i] = component(i);
-  const S o[3] = {component(3), component(4), component(5)};
+  for (int i = 0; i < 3; ++i) out.tip[i] = quartic_at(quartic[i], x);
+  const S o[3] = {quartic_at(quartic[3], x), quartic_at(quartic[4], x), quartic_at(quartic[5], x)};
   const S shrink = 1.0 / sqrt(S(o[0] * o[0] + o[1] * o[1] + o[2] * o[2]));
   for (int i = 0; i < 3; ++i) out.axis[i] = o[i] * shrink;
   return out;

@@ -41,11 +41,13 @@ double mean_deviation(const BandPolyline& line, std::int64_t before, std::int64_
   return kCorner * gap * std::max(tip, axis);
 }
 
-/// The same of gaps about vertex `i`.
-double mean_deviation(const BandPolyline& line, std::int64_t i, double gap) noexcept {
+/// The same of gaps about vertex `i`, which feel no vertex before `from`: moved on to the first
+/// that they feel.
+double mean_deviation(const BandPolyline& line, std::int64_t i, double gap,
+                      std::int64_t& from) noexcept {
   const std::int64_t low = std::max<std::int64_t>(i - kVertexReach, 0);
   const double u = line[i].u;
-  const std::int64_t from = line.find_from(u - kSupport * gap, low);
+  from = line.find_from(u - kSupport * gap, from);
   const std::int64_t to = std::min(line.find_after(u + kSupport * gap, i), line.last());
   return mean_deviation(line, std::max(low, from - 1), from, to, gap);
 }
@@ -69,8 +71,9 @@ double find_gap(const BandPolyline& line, std::int64_t i) noexcept {
   const double dense = gap_by_density(line, i);
   if (i == 0 || i == line.last()) return std::max(dense, min);
   if (dense > min && is_straight(line, i, dense)) return dense;
+  std::int64_t from = std::max<std::int64_t>(i - kVertexReach, 0);
   for (double gap = dense; gap > min; gap *= kShrink) {
-    if (mean_deviation(line, i, gap) <= kMeanShare) return gap;
+    if (mean_deviation(line, i, gap, from) <= kMeanShare) return gap;
   }
   return min;
 }

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace meridian {
 namespace {
 
 constexpr std::size_t kDegree = 4;
 constexpr std::size_t kSamplesPerSpan = 8;
+constexpr int kMinIterations = 4;
 constexpr double kMinSpacing = 0.2;  // of a span, between vertices that are samples
 
 std::size_t index(std::int64_t i) noexcept { return static_cast<std::size_t>(i); }
@@ -196,40 +198,57 @@ void BandSmoother::iterate() noexcept {
     z_[q] = value_at(samples_[q]);
     y_[q].fill(0);
   }
-  std::vector<Vector6>& sum = rhs_;
-  for (int iteration = 0; iteration < tuning_.iterations; ++iteration) {
-    for (std::size_t i = 0; i < size_; ++i) {
-      for (std::size_t d = 0; d < 6; ++d) sum[i][d] = -fixed_[i][d];
-    }
-    for (std::size_t q = 0; q < samples_.size(); ++q) {
-      const Sample& sample = samples_[q];
-      Vector6 pulled;
-      for (std::size_t d = 0; d < 6; ++d) pulled[d] = z_[q][d] - y_[q][d];
-      for (std::size_t k = 0; k < 5; ++k) {
-        const std::size_t p = sample.at + k;
-        if (p >= kDegree && p < kDegree + size_) add_product(sum[p - kDegree], sample.n[k], pulled);
-      }
-    }
+  double moved = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < tuning_.iterations; ++n) {
+    if (n >= kMinIterations && moved <= tuning_.settled) break;
+    pull_points();
     solve();
-    for (std::size_t q = 0; q < samples_.size(); ++q) {
-      const Sample& sample = samples_[q];
-      const Vector6 v = value_at(sample);
-      Vector6 e;  // from the polyline, relaxed, with the multiplier
-      for (std::size_t d = 0; d < 6; ++d) {
-        e[d] = tuning_.relaxation * v[d] + (1 - tuning_.relaxation) * z_[q][d] + y_[q][d] -
-               sample.y[d];
-      }
-      const double tip = std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
-      const double axis = std::sqrt(e[3] * e[3] + e[4] * e[4] + e[5] * e[5]);
-      const double tip_share = tip > sample.tip ? sample.tip / tip : 1;
-      const double axis_share = axis > sample.axis ? sample.axis / axis : 1;
-      for (std::size_t d = 0; d < 6; ++d) {
-        const double inside = (d < 3 ? tip_share : axis_share) * e[d];
-        y_[q][d] = e[d] - inside;
-        z_[q][d] = sample.y[d] + inside;
-      }
+    moved = move_samples();
+  }
+}
+
+/// The right-hand side, in rhs_: where the samples pull the points to.
+void BandSmoother::pull_points() noexcept {
+  std::vector<Vector6>& sum = rhs_;
+  for (std::size_t i = 0; i < size_; ++i) {
+    for (std::size_t d = 0; d < 6; ++d) sum[i][d] = -fixed_[i][d];
+  }
+  for (std::size_t q = 0; q < samples_.size(); ++q) {
+    const Sample& sample = samples_[q];
+    Vector6 pulled;
+    for (std::size_t d = 0; d < 6; ++d) pulled[d] = z_[q][d] - y_[q][d];
+    for (std::size_t k = 0; k < 5; ++k) {
+      const std::size_t p = sample.at + k;
+      if (p >= kDegree && p < kDegree + size_) add_product(sum[p - kDegree], sample.n[k], pulled);
     }
   }
+}
+
+/// Moves the samples to the spline, as far as their band lets them. By how much at most, in
+/// tolerances.
+double BandSmoother::move_samples() noexcept {
+  double moved = 0;
+  for (std::size_t q = 0; q < samples_.size(); ++q) {
+    const Sample& sample = samples_[q];
+    const Vector6 v = value_at(sample);
+    Vector6 e;  // from the polyline, relaxed, with the multiplier
+    for (std::size_t d = 0; d < 6; ++d) {
+      e[d] =
+          tuning_.relaxation * v[d] + (1 - tuning_.relaxation) * z_[q][d] + y_[q][d] - sample.y[d];
+    }
+    const double tip = std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+    const double axis = std::sqrt(e[3] * e[3] + e[4] * e[4] + e[5] * e[5]);
+    const double tip_share = tip > sample.tip ? sample.tip / tip : 1;
+    const double axis_share = axis > sample.axis ? sample.axis / axis : 1;
+    for (std::size_t d = 0; d < 6; ++d) {
+      const double inside = (d < 3 ? tip_share : axis_share) * e[d];
+      const double z = sample.y[d] + inside;
+      moved = std::max(moved, std::abs(z_[q][d] - z));
+      y_[q][d] = e[d] - inside;
+      z_[q][d] = z;
+    }
+  }
+  return moved;
 }
 
 }  // namespace meridian

@@ -60,6 +60,8 @@ class BandSmoother {
   void factorise() noexcept;
   void solve() noexcept;
   void iterate() noexcept;
+  void pull_points() noexcept;
+  [[nodiscard]] double move_samples() noexcept;
   [[nodiscard]] Vector6 value_at(const Sample& sample) const noexcept;
   void verify(const BandPolyline& line, const BandKnots& knots, ControlPoints& points,
               SmoothedWindow& out) noexcept;

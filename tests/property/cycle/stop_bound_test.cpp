@@ -76,7 +76,8 @@ double stop(const MachineModel& machine, const std::vector<ClBlock>& blocks, Cau
   while (run.world.now() != end && run.world.records.size() < first + 2500) run.run();
   if (run.world.now() != end) return 9;
   expect_within_limits(run.world, first, is_fault(cause), worst);
-  return static_cast<double>(run.world.records.size() - first) * run.world.dt();
+  const std::size_t end_at = run.world.records.size();  // it may rest within the periods lost
+  return end_at > first ? static_cast<double>(end_at - first) * run.world.dt() : 0;
 }
 
 TEST(StopBound, HoldsAndFaultStopsEndHoweverSlowTheRateOfPlanTimeFalls) {

@@ -81,9 +81,10 @@ TEST_P(Creep, IsNowhereInDrawnPrograms) {
   std::printf("slower than a thousandth of the feed for %.3f s at most\n", longest);
 }
 
-/// Three blocks from rest to rest: one takes its two micrometres in ten seconds, the others are
+/// Three blocks from rest to rest: one takes its two micrometres in `slow_s`, the others are
 /// `length_mm` long.
-std::vector<ClBlock> with_a_slow_block(const MachineModel& model, int slow, double length_mm) {
+std::vector<ClBlock> with_a_slow_block(const MachineModel& model, int slow, double length_mm,
+                                       double slow_s) {
   const ClBlock begin = RandomPrograms(1).program(model, 1).front();
   const ToolPose at{to_vector(begin.tip_mm), to_vector(begin.axis)};
   std::vector<ClBlock> blocks = {cut_block(0, at)};
@@ -93,27 +94,30 @@ std::vector<ClBlock> with_a_slow_block(const MachineModel& model, int slow, doub
     blocks.push_back(cut_block(n, {at.tip + distance_mm * Vector3::UnitX(), at.axis}));
     if (n != slow) continue;
     blocks.back().feed_meaning = FeedMeaning::kInverseTime;
-    blocks.back().feed = 0.1;
+    blocks.back().feed = 1 / slow_s;
   }
   end_program(blocks);
   return blocks;
 }
 
 TEST_P(Creep, IsNowhereBetweenARestAndABlockThatIsSlowByItsOwnWord) {
-  double longest = 0;
+  double longest = 0;  // beyond what was asked for
   for (const std::string& name : cases(shipped_machines())) {
     const MachineModel model = config::load_machine(shipped_file(name));
     for (const double length_mm : cases({0.007, 0.03, 1.0})) {
       for (int slow = 1; slow <= 3; ++slow) {
-        SCOPED_TRACE(name + ", block " + std::to_string(slow) + ", " + std::to_string(length_mm));
-        const SmoothTrace trace = plan(model, with_a_slow_block(model, slow, length_mm));
-        EXPECT_EQ(trace.last.status, PlanStatus::kOk) << static_cast<int>(trace.last.reject.code);
-        EXPECT_LT(trace.duration_s(), 10 + 3);
-        longest = std::max(longest, trace.duration_s());
+        for (const double slow_s : {9.0, 9.63, 10.0}) {  // windows end elsewhere
+          SCOPED_TRACE(testing::Message() << name << ", block " << slow << " of " << slow_s
+                                          << " s, " << length_mm << " mm");
+          const SmoothTrace trace = plan(model, with_a_slow_block(model, slow, length_mm, slow_s));
+          EXPECT_EQ(trace.last.status, PlanStatus::kOk) << static_cast<int>(trace.last.reject.code);
+          EXPECT_LT(trace.duration_s(), slow_s + 1);
+          longest = std::max(longest, trace.duration_s() - slow_s);
+        }
       }
     }
   }
-  std::printf("ten seconds are asked for, %.3f s taken at most\n", longest);
+  std::printf("%.3f s longer than asked for, at most\n", longest);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Creep, testing::Values(Transition::kSmooth, Transition::kExactStop),

@@ -48,7 +48,7 @@ void RollingFeed::choose_bar(const Attempt& how) noexcept {
 /// Whether what stands of the result is where jerk was linearised, or far from its limits there:
 /// again would gain nothing.
 bool RollingFeed::is_near_bar() const noexcept {
-  const int near = std::min(new_.cells(), settings_.commit_cells + settings_.commit_cells / 2);
+  const int near = std::min(new_.cells(), settings_.max_commit_cells);
   for (int k = 0; k < near; ++k) {
     const bool has_tangent = !std::isnan(bar_slopes_[k]);
     const double ratio = new_.b[k] / bar_knots_[k];

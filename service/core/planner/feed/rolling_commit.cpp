@@ -11,20 +11,18 @@ namespace {
 
 /// Pieces of a tail: the cycle skips all of them in one call, and has places left for paths.
 constexpr std::size_t kMaxTail = MotionReader::kMaxDrops - 8;
+constexpr int kOntoBraking = 30;  // cells over which a plan changes from going on to braking
 
 }  // namespace
 
-/// Where cells are short a window keeps more of them: planning it never takes long beside the
-/// motion that it yields.
+/// What a plan does ahead of its braking to rest hardly depends on where that rest is: the fewer
+/// windows the better. The braking itself is planned again.
 int RollingFeed::cells_to_keep(const Plan& plan) const noexcept {
-  const int largest = std::min(2 * settings_.commit_cells, plan.cells() - settings_.commit_cells);
-  int kept = std::min(settings_.commit_cells, plan.cells());
-  double time = 0;
-  for (int k = 0; k < kept || (kept < largest && time < settings_.commit_s); ++k) {
-    time += grid_[plan.first + k].h / std::sqrt(0.5 * (plan.b[k] + plan.b[k + 1]));
-    if (k >= kept) ++kept;
-  }
-  return kept;
+  int braking = plan.cells();
+  while (braking > 0 && plan.b[braking - 1] >= plan.b[braking]) --braking;
+  const int free =
+      std::clamp(braking - kOntoBraking, settings_.commit_cells, settings_.max_commit_cells);
+  return std::min(free, plan.cells());
 }
 
 /// Index of the first piece of the tail behind `kept` cells, or of as many more as it takes for the

@@ -24,6 +24,7 @@ constexpr double kBesideSlow = 0.25;  // of u̇² at that bound, beside a slow c
 constexpr int kHistory = 240;         // cells kept behind the next one, at most: three windows
 constexpr int kSpare = 8;             // cells of the store
 constexpr int kTrials = 2;            // results far from it that tighten no cell
+constexpr double kJump = 0.03;        // of u̇², from cell to cell
 constexpr double kSure = 0.9;         // use by a cell's bounds: no closer look is needed
 constexpr double kFeedSlack = 1.002;  // on u̇², beside CellSettings::feed_share
 
@@ -57,6 +58,8 @@ RollingFeed::RollingFeed(const MachineModel& model, const FeedSettings& settings
   settings_.window_cells = window_of(settings);
   history_ = std::min(kHistory, settings.cells.kept_cells - settings_.window_cells - kSpare);
   settings_.commit_cells = std::clamp(settings.commit_cells, 1, settings_.window_cells - 10);
+  settings_.max_commit_cells =
+      std::clamp(settings.max_commit_cells, settings_.commit_cells, settings_.window_cells - 10);
   for (auto* v :
        {&backward_, &bound_, &bar_knots_, &bar_middles_, &bar_slopes_, &accel_share_, &jerk_share_,
         &old_.b, &old_.slope, &new_.b, &new_.slope, &best_.b, &best_.slope}) {
@@ -122,6 +125,7 @@ bool RollingFeed::plan_window() noexcept {
       {true, 1, 0, RestRoom::kOwn},
       {true, 1, 0},
       {true, 1, 0, RestRoom::kLargest, true},
+      {true, 1, 0, RestRoom::kLargest, false, true},
       {false, 1, 0},
       {true, 0.3, 0},
       {true, 1, 7},
@@ -135,6 +139,14 @@ bool RollingFeed::plan_window() noexcept {
                      [this](const Attempt& how) { return attempt(how); });
 }
 
+std::int64_t RollingFeed::find_jump(std::int64_t first, std::int64_t end) const noexcept {
+  for (std::int64_t k = end - 1; k > first; --k) {
+    const double ratio = grid_[k].max_b / grid_[k - 1].max_b;
+    if (ratio < kJump || ratio * kJump > 1) return k;
+  }
+  return end;
+}
+
 bool RollingFeed::attempt(const Attempt& how) noexcept {
   const std::int64_t first = is_at_rest_ ? next_ + 1 : next_;
   std::int64_t end = window_end();
@@ -142,6 +154,11 @@ bool RollingFeed::attempt(const Attempt& how) noexcept {
     const bool is_last = grid_.is_complete() && end == grid_.last();
     end -= how.shorter;
     if (is_last || end < first + kMinCells + 2) return false;
+  }
+  if (how.is_to_jump) {
+    const std::int64_t jump = find_jump(first + kMinCells + 2, end);
+    if (jump == end) return false;
+    end = jump;
   }
   if (end - first < kMinCells) return false;
   if (is_at_rest_) {

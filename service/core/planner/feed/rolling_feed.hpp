@@ -19,10 +19,10 @@ namespace meridian {
 struct FeedSettings {
   CellSettings cells;
   RateReserve reserve;
-  int window_cells = 120;  ///< planned at a time, to a rest at their end; 20 to 160
-  int commit_cells = 40;   ///< of them kept, and on to twice as many while they yield
-  double commit_s = 0.06;  ///< less motion than this
-  int max_rounds = 240;    ///< of the solver per window; then the plan before it stands
+  int window_cells = 120;     ///< planned at a time, to a rest at their end; 20 to 160
+  int commit_cells = 40;      ///< of them kept, at least
+  int max_commit_cells = 60;  ///< kept where braking to that rest begins farther on
+  int max_rounds = 240;       ///< of the solver per window; then the plan before it stands
   /// Convex programmes per window at most, each around the result of the last. There is a second
   /// one where the first leads away from the plan of the window before, around which it was made.
   int refinements = 2;
@@ -125,10 +125,14 @@ class RollingFeed {
     double softness;     ///< share of the speed beside rests
     int shorter;         ///< cells that the window is shortened by
     RestRoom room = RestRoom::kLargest;
-    bool is_steady = false;  ///< linearise elsewhere at no more than the steady speed there
+    bool is_steady = false;   ///< linearise elsewhere at no more than the steady speed there
+    bool is_to_jump = false;  ///< ends where what feed and velocity allow jumps, if it does
   };
 
   [[nodiscard]] bool plan_window() noexcept;
+  /// The last cell behind `first` and before `end` whose bound by feed and velocity is far from
+  /// that of the cell before; `end` where there is none.
+  [[nodiscard]] std::int64_t find_jump(std::int64_t first, std::int64_t end) const noexcept;
   [[nodiscard]] bool attempt(const Attempt& how) noexcept;
   /// Into `backward_` and `bound_`, of the cells first .. end - 1.
   void pass_twice(std::int64_t first, std::int64_t end, double b_begin) noexcept;

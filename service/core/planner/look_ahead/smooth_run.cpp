@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kSpans = 2048;
 constexpr std::size_t kMaxRelaxedAxes = 256;  // that wait to be taken; the oldest go
 constexpr std::size_t kBlockEnds = 8192;
+constexpr std::size_t kTogether = 2;  // pieces outside of tails that share an authority to stop
 constexpr double kSameCut_mm = 1e-9;  // of u, where spans were cut
 
 /// Least time that a span takes at its programmed feed.
@@ -373,7 +374,7 @@ TimePiece SmoothRun::make_piece(const FeedPiece& piece, bool is_tail) const noex
 /// Hardly any tail is ever entered: its pieces share their authority to stop.
 bool SmoothRun::stage_pieces(MotionWriter& writer, std::span<const FeedPiece> pieces,
                              bool is_tail) noexcept {
-  const std::size_t together = is_tail ? StopStretch::kMaxParts : 1;
+  const std::size_t together = is_tail ? StopStretch::kMaxParts : kTogether;
   std::array<TimePiece, StopStretch::kMaxParts> times;
   bool is_staged = true;
   while (!pieces.empty()) {

@@ -23,16 +23,9 @@ void expect_same(const FeedPiece& a, const FeedPiece& b) {
   EXPECT_EQ(a.duration, b.duration);
 }
 
-double duration_of(const std::vector<FeedPiece>& pieces) {
-  double sum = 0;
-  for (const FeedPiece& piece : pieces) sum += piece.duration;
-  return sum;
-}
-
 TEST(RollingCommit, CommitsTheCellsThatSettingsSay) {
   FeedSettings settings = without_reserve();
-  settings.commit_cells = 30;
-  settings.commit_s = 0;
+  settings.commit_cells = settings.max_commit_cells = 30;
   Rolled one(settings);
   one.add_straight(40, 3.2, 10, 80);
   one.run();
@@ -44,31 +37,40 @@ TEST(RollingCommit, CommitsTheCellsThatSettingsSay) {
   }
 }
 
-TEST(RollingCommit, CommitsMoreCellsWhereTheyAreShortButNoMoreThanTwiceAsMany) {
-  for (const double commit_s : {0.1, 100.0}) {
-    FeedSettings settings = without_reserve();
-    settings.commit_cells = 25;
-    settings.commit_s = commit_s;
-    Rolled one(settings);
-    one.add_straight(80, 2.0, 10, 80);  // 2.5 ms a cell
-    one.run();
-    ASSERT_GT(one.windows.size(), 6U);
-    const RolledWindow &before = one.windows[3], &w = one.windows[4];
-    const std::int64_t cells = w.committed.back().cell - before.committed.back().cell;
-    if (commit_s > 1) {
-      EXPECT_EQ(cells, 50);
-    } else {
-      EXPECT_EQ(cells, 40);
-      EXPECT_NEAR(duration_of(w.committed), 0.1, 0.0026);
-    }
+/// Cells that the window at `n` of a straight of 80 mm committed, whose braking takes `braking_s`
+/// of the 0.3 s of a window.
+std::int64_t committed_by(double braking_s, std::size_t n) {
+  MachineModel model = bench_machine();
+  for (int i = 0; i < 3; ++i) {
+    model.joints[i].limits.acceleration = 32 / braking_s;
+    model.joints[i].limits.jerk = 1e6;
   }
+  FeedSettings settings = without_reserve();
+  settings.commit_cells = 25;
+  settings.max_commit_cells = 50;
+  Rolled one(settings, model);
+  one.add_straight(80, 2.0, 10, 80);  // 2.5 ms a cell
+  one.run();
+  EXPECT_GT(one.windows.size(), n + 1);
+  return one.windows[n].committed.back().cell - one.windows[n - 1].committed.back().cell;
+}
+
+TEST(RollingCommit, CommitsMoreCellsWhereBrakingIsFarButNoMoreThanItMay) {
+  EXPECT_EQ(committed_by(0.02, 4), 50);
+}
+
+TEST(RollingCommit, CommitsNoCellsNearTheBraking) {
+  // 0.12 s before its end a window of 120 cells of 2.5 ms brakes.
+  const std::int64_t cells = committed_by(0.12, 4);
+  EXPECT_GT(cells, 25);
+  EXPECT_LT(cells, 50);
+  EXPECT_EQ(committed_by(0.2, 4), 25);
 }
 
 TEST(RollingCommit, ATailIsShortEnoughToBeSkippedInOneCall) {
   FeedSettings settings = without_reserve();
   settings.window_cells = JerkStep::kCells;
-  settings.commit_cells = 10;
-  settings.commit_s = 0;
+  settings.commit_cells = settings.max_commit_cells = 10;
   Rolled one(settings);
   one.add_straight(60, 3.2, 10, 80);
   one.run();
