@@ -66,6 +66,7 @@ std::ostream& operator<<(std::ostream& out, const Gate& gate) { return out << ga
       {"hold_reaction", "integration_service", "LiveReaction.OfAHold*"},
       {"stop_time", "rt_motion_test", "StoppingTime.*"},
       {"smooth_stop_late", "rt_motion_test", hold},
+      {"smooth_stop_late_attainable", "rt_motion_test", hold},
       {"smooth_stop_late_by", "rt_motion_test", hold},
       {"smooth_stop_far_by", "rt_motion_test", hold},
       {"smooth_stop_time_p75", "rt_motion_test", hold},

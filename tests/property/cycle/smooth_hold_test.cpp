@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// Holds at any instant of smooth programs, in the cycle: how long they take and how far they go,
-/// against the least that the joints' limits allow on the path ahead. A longer run on other seeds:
+/// against the hardest braking that the joints' limits allow at each point, and against a stop that
+/// keeps them on the path ahead. A longer run on other seeds:
 ///
 ///     MERIDIAN_HOLD_SEED=1000 MERIDIAN_HOLD_PROGRAMS=300 rt_motion_test
 ///     --gtest_filter='SmoothHold*'
@@ -10,9 +11,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "property/cycle/attainable_stop.hpp"
 #include "property/cycle/program_run.hpp"
 #include "property/cycle/stop_oracle.hpp"
 #include "property/path/hostile_path.hpp"
@@ -41,6 +44,9 @@ class PathAhead {
   PathAhead(const MachineModel& model, const Trace& trace, std::size_t piece,
             const JointVector& joints)
       : model_(model), trace_(trace), piece_(piece), reference_(joints) {}
+
+  /// Where the path piece ends that joints were asked for last.
+  [[nodiscard]] double end() const { return passed_ + path().length; }
 
   [[nodiscard]] Joints<Jet<3>> operator()(double s) {
     while (s - passed_ > path().length) {
@@ -86,14 +92,32 @@ struct Holds {
   std::vector<double> time, distance;                          ///< over the least
   std::vector<double> late_s, far_mm;                          ///< beyond its factor of the least
 
+  std::vector<double> attainable, gap;  ///< time over the attainable one, that over the least
+  int late_along_plan = 0;              ///< later than the factor of it, without a law at first
+  int unknown = 0;                      ///< no attainable stop was found: the least counts for it
+
   void take(double time_s, double distance_mm, const MinStop& min) {
     time.push_back(time_s / min.time_s);
     distance.push_back(distance_mm / min.distance_mm);
     late_s.push_back(time_s - stop.factor * min.time_s);
     far_mm.push_back(distance_mm - stop.factor * min.distance_mm);
   }
+  void take(double time_s, const MinStop& min, const std::optional<StopMotion>& found,
+            bool is_along_plan) {
+    if (!found) ++unknown;
+    const double attainable_s = found ? found->time_s() : min.time_s;
+    attainable.push_back(time_s / attainable_s);
+    gap.push_back(attainable_s / min.time_s);
+    if (is_along_plan && attainable.back() > stop.factor) ++late_along_plan;
+  }
   void sort() {
-    for (auto* all : {&time, &distance, &late_s, &far_mm}) std::sort(all->begin(), all->end());
+    for (auto* all : {&time, &distance, &late_s, &far_mm, &attainable, &gap})
+      std::sort(all->begin(), all->end());
+  }
+  /// How many exceed `bound`, in percent.
+  [[nodiscard]] static double percent_above(const std::vector<double>& all, double bound) {
+    const auto above = std::count_if(all.begin(), all.end(), [=](double x) { return x > bound; });
+    return 100.0 * static_cast<double>(above) / static_cast<double>(all.size());
   }
   /// The value that a share of them does not exceed.
   [[nodiscard]] static double at(const std::vector<double>& all, double share) {
@@ -134,17 +158,19 @@ void hold_at_any_instant(std::uint32_t seed, Holds& holds) {
     const std::size_t piece = find_piece(trace, *run.world.reader.piece());
     const JointVector joints = run.world.state.joints;
     run.command(Verb::kHold);
+    const bool is_along = is_along_plan(run.world.state.stop.mode);
     for (double s = 0; s < 10 && run.world.now() != State::kHeld; s += dt) run.run();
     ASSERT_EQ(run.world.now(), State::kHeld);
     const Event stopped = run.world.last(EventCode::kStopped);
     run.command(Verb::kResume);
     if (!is_smooth || begin.ds <= 1e-3) continue;
     ASSERT_LT(piece, trace.times.size());
-    PathAhead ahead(machine, trace, piece, joints);
-    const MinStop min = min_stop(machine, begin, [&](double s) { return ahead(s); });
+    const PathAhead ahead(machine, trace, piece, joints);
+    const MinStop min = min_stop(machine, begin, PathAhead(ahead));
     const double granted_s = holds.stop.plus * dt;
     const double taken_s = static_cast<double>(stopped.a) * 1e-9 - granted_s;
     holds.take(taken_s, stopped.x - granted_s * begin.ds, min);
+    holds.take(taken_s, min, AttainableStop(machine, begin, ahead).find(), is_along);
   }
 }
 
@@ -159,12 +185,17 @@ TEST(SmoothHold, StopsInLittleMoreThanTheLeastTimeAndLength) {
   }
   ASSERT_GT(holds.time.size(), 10U);
   holds.sort();
-  const auto beyond = std::count_if(holds.late_s.begin(), holds.late_s.end(),
-                                    [](double late_s) { return late_s > 0; });
-  const double late_percent =
-      100.0 * static_cast<double>(beyond) / static_cast<double>(holds.time.size());
+  const double late_percent = Holds::percent_above(holds.late_s, 0);
+  const double late_attainable = Holds::percent_above(holds.attainable, holds.stop.factor);
   std::printf("%zu holds, %.1f %% later than %.2f of the least time\n", holds.time.size(),
               late_percent, holds.stop.factor);
+  std::printf(
+      "  %.1f %% later than that of the attainable time: %d along the plan first, %.0f not\n",
+      late_attainable, holds.late_along_plan,
+      late_attainable / 100 * static_cast<double>(holds.time.size()) - holds.late_along_plan);
+  if (holds.unknown > 0) std::printf("  %d without an attainable stop\n", holds.unknown);
+  print("time over the attainable one", holds.attainable);
+  print("attainable time over the least", holds.gap);
   print("time over the least", holds.time);
   print("length over the least", holds.distance);
   print("later than the budget of a stop, s", holds.late_s);
@@ -173,6 +204,7 @@ TEST(SmoothHold, StopsInLittleMoreThanTheLeastTimeAndLength) {
   expect_kept("smooth_stop_far_by", holds.far_mm.back());
   if (holds.time.size() < 100) return;  // a sanitizer's few draws have no shares
   expect_kept("smooth_stop_late", late_percent);
+  expect_kept("smooth_stop_late_attainable", late_attainable);
   expect_kept("smooth_stop_time_p75", Holds::at(holds.time, 0.75), 1);
   expect_kept("smooth_stop_length_p75", Holds::at(holds.distance, 0.75), 1);
 }
