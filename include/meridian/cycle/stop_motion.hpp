@@ -97,6 +97,18 @@ inline void lay_out_stop(CycleState& state, const PathState& begin,
   return StopLaw(begin, authority).distance() > distance_to_block_end(c) - kSameEnd_mm;
 }
 
+/// Whether a law with `authority` from `begin` gets no faster than one from the plan there. While
+/// the rate of plan time still rises, of a resume, it adds to s̈: the planner reckons with the s̈ of
+/// the plan, and the law could let go of more above the velocity that a joint has.
+[[nodiscard]] inline bool is_rise_planned(const Cycle& c, const PathState& begin,
+                                          const StopMargin& authority) noexcept {
+  constexpr double kRounding = 1 + 1e-9;
+  const TimePiece& piece = *c.reader.piece();
+  if (!(begin.dds > 0) || !(authority.jerk > 0) || !(piece.slow_velocity > 0)) return true;
+  const PathState plan = state_at(piece, c.state.piece_time);
+  return peak_of(begin, authority) <= kRounding * peak_of(plan, authority);
+}
+
 /// Begins the stop from where and how the machine moves along its path; nothing moves: it is over
 /// at once. A stop that was going on is laid out anew with the authority of `kind`. Without
 /// authority it goes on as it was, or along the plan, for whose rate every plan leaves room, to the
@@ -115,6 +127,7 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
     authority = authority_of(piece, kind, begin);
     authority = {authority.accel * share, authority.jerk * share};
     if (kind == StopKind::kHold && passes_block_end(c, begin, authority)) authority = {};
+    if (!is_rise_planned(c, begin, authority)) authority = {};
   }
   const bool was_by_rate = is_along_plan(stop.mode);
   const bool has_authority = authority.jerk > 0 || !(begin.ds > 0);
@@ -265,6 +278,7 @@ inline void end_stop_here(CycleState& state) noexcept {
   if (!(authority.jerk > 0)) return {};
   if (is_fault && !is_reckoned_with(c, authority)) return {};
   if (!is_fault && passes_block_end(c, c.state.on_path, authority)) return {};
+  if (!is_rise_planned(c, c.state.on_path, authority)) return {};
   return authority;
 }
 

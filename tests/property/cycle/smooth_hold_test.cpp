@@ -209,5 +209,14 @@ TEST(SmoothHold, StopsInLittleMoreThanTheLeastTimeAndLength) {
   expect_kept("smooth_stop_length_p75", Holds::at(holds.distance, 0.75), 1);
 }
 
+/// One of its holds begins on a rise of the plan while a resume still raises the rate. A law that
+/// let go of both there took C over its velocity, and the guard ended the program.
+TEST(SmoothHold, KeepsTheVelocityLimitWhereItBeginsWhileTheRateStillRises) {
+  constexpr std::uint32_t kSeed = 1194;
+  Holds holds;
+  hold_at_any_instant(kSeed, holds);
+  EXPECT_GT(holds.time.size(), 5U);
+}
+
 }  // namespace
 }  // namespace meridian::test::smooth_hold
