@@ -22,7 +22,7 @@ constexpr double kRounding_mm = 1e-9;
 constexpr double kTiny = 1e-12;
 constexpr std::int64_t kNoEnd = std::numeric_limits<std::int64_t>::max();
 constexpr double kFast = 1.0002;  // on ṡ² that feed and velocity allow: what a plan may use
-constexpr double kSlow = 0.6;     // rate of plan time below which slow_* may be used
+constexpr double kSlow = 0.4;     // rate of plan time below which slow_* may be used
 /// Rates of plan time at which authority is sought where there is none at the full rate.
 constexpr double kRates[] = {0.97, 0.94, 0.9, 0.85, 0.78, 0.7, 0.6, 0.45, 0.3, 0.15};
 

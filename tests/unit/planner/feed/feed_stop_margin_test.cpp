@@ -17,11 +17,11 @@ TEST(FeedStopMargin, IsAllOfTheJointWhereThePathIsStraight) {
   EXPECT_NEAR(time.fault_accel, 1.02 * std::sqrt(kFaultJerk * 50), 1e-6);
   EXPECT_EQ(time.stop_velocity, kAnyVelocity);
   EXPECT_EQ(time.fault_velocity, kAnyVelocity);
-  EXPECT_NEAR(time.slow_velocity, 30, 1e-9);
+  EXPECT_NEAR(time.slow_velocity, 50 * kSlow, 1e-9);
   EXPECT_NEAR(time.slow_stop_jerk, kJerk, 1e-6);
-  EXPECT_NEAR(time.slow_stop_accel, 1.02 * std::sqrt(kJerk * 30), 1e-6);
+  EXPECT_NEAR(time.slow_stop_accel, 1.02 * std::sqrt(kJerk * 50 * kSlow), 1e-6);
   EXPECT_NEAR(time.slow_fault_jerk, kFaultJerk, 1e-6);
-  EXPECT_NEAR(time.slow_fault_accel, 1.02 * std::sqrt(kFaultJerk * 30), 1e-6);
+  EXPECT_NEAR(time.slow_fault_accel, 1.02 * std::sqrt(kFaultJerk * 50 * kSlow), 1e-6);
   path.expect_safe(time);
 }
 
@@ -100,7 +100,7 @@ TEST(FeedStopMargin, HasNothingForSlowMachinesInATail) {
   Path path;
   const TimePiece time = path.grant(10, 50, 0, true);
   EXPECT_NEAR(time.stop_jerk, kJerk, 1e-6);
-  EXPECT_NEAR(time.slow_velocity, 30, 1e-9);
+  EXPECT_NEAR(time.slow_velocity, 50 * kSlow, 1e-9);
   EXPECT_EQ(time.slow_stop_jerk, 0);
   EXPECT_EQ(time.slow_fault_jerk, 0);
   EXPECT_EQ(time.slow_stop_accel, 0);

@@ -16,6 +16,7 @@ namespace meridian::test::feed_stop_margin {
 inline constexpr int kCells = 80;
 inline constexpr double kH = 0.5;                                    // mm, of a cell
 inline constexpr double kAccel = 0.99 * 3000, kJerk = 0.99 * 60000;  // of the first joint
+inline constexpr double kSlow = 0.4;                                 // rate up to which slow_* are
 inline constexpr double kFaultAccel = 0.99 * 6000, kFaultJerk = 0.99 * 240000;
 
 /// Cells along which the first joint goes d1 times as fast as the path, and bends by d2 and d3.
@@ -92,8 +93,8 @@ struct Path {
   void expect_safe(const TimePiece& time) const {
     EXPECT_LE(use(time, {time.stop_accel, time.stop_jerk}, false).worst, 1);
     EXPECT_LE(use(time, {time.fault_accel, time.fault_jerk}, true).worst, 1);
-    EXPECT_LE(use(time, {time.slow_stop_accel, time.slow_stop_jerk}, false, 0.6).worst, 1);
-    EXPECT_LE(use(time, {time.slow_fault_accel, time.slow_fault_jerk}, true, 0.6).worst, 1);
+    EXPECT_LE(use(time, {time.slow_stop_accel, time.slow_stop_jerk}, false, kSlow).worst, 1);
+    EXPECT_LE(use(time, {time.slow_fault_accel, time.slow_fault_jerk}, true, kSlow).worst, 1);
   }
 
   MadeCells cells{kCells, kH, 1e6};
