@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "support/machines.hpp"
+#include "unit/cycle/program.hpp"
 
 namespace meridian::test::stop_motion {
 namespace {
@@ -22,6 +23,23 @@ MachineModel machine_with_faults(double factor) {
   }
   return machine;
 }
+
+/// In the middle of a cut at 100 mm/s, with one cycle to call functions of.
+struct Cutting : Program {
+  explicit Cutting(double stop_share = 1, int barriers = 1) {
+    plan.stop_share = stop_share;
+    plan.cut({200, 0, 0}, kLimits);
+    for (int n = 0; n < barriers; ++n)
+      plan.barrier(n + 1 < barriers ? TimeKind::kDwell : TimeKind::kEnd);
+    run(0.6);
+    EXPECT_EQ(world.now(), State::kRunning);
+  }
+  [[nodiscard]] Cycle cycle() {
+    const Feedback& drives = world.in.feedback;
+    return {machine, world.state,        world.reader, world.in, world.out,      world.dt(),
+            1,       world.state.joints, world.dt(),   drives,   drives.position};
+  }
+};
 
 TEST(StopMotion, TheRateFallsNoFasterThanPlansLeaveRoomForWhereFaultLimitsAreTheSame) {
   const MachineModel machine = machine_with_faults(1);
@@ -154,6 +172,92 @@ TEST(StopMotion, AStopThatIsLaidOutAnewGoesOnCounting) {
   EXPECT_EQ(state.stop.time, 0);
   EXPECT_DOUBLE_EQ(state.stop.stopping_time, 0.02 + law.duration());
   EXPECT_DOUBLE_EQ(state.stop.stopping_distance, first + law.distance());
+}
+
+TEST(StopMotion, OffThePathItBeginsWhereAndHowTheJointsMove) {
+  const MachineModel machine = machine_with_faults(1);
+  const JointVector at{1, 2, 3, 0.1, 0.2}, velocity{10, -20, 0, 0.1, 0};
+  CycleState state;
+  state.stop = stop_off_path(machine, at, velocity);
+  put_off_path(state, machine.joint_count);
+  EXPECT_EQ(state.joints, at);
+  EXPECT_EQ(state.velocity, velocity);
+}
+
+TEST(StopMotion, AHoldWithoutAuthorityGoesAlongThePlanUntilItsRateIsZero) {
+  Cutting one(0);
+  one.world.command(Verb::kHold);
+  EXPECT_EQ(one.world.state.stop.mode, StopMode::kHoldAlongPlan);
+  double before = 1;
+  for (int n = 0; n < 20; ++n) {
+    const double rate = one.world.run().rate;
+    EXPECT_LT(rate, before);
+    before = rate;
+  }
+  EXPECT_EQ(one.world.now(), State::kHolding) << "no stop at once";
+  ASSERT_TRUE(one.world.run_until(State::kHeld, 3));
+  EXPECT_EQ(one.world.state.velocity, JointVector{});
+  EXPECT_EQ(one.world.count(EventCode::kStopped), 1);
+}
+
+TEST(StopMotion, AFaultStopWithoutAuthorityGoesAlongThePlanToo) {
+  Cutting one(0);
+  Cycle c = one.cycle();
+  begin_stop(c, StopKind::kFault);
+  EXPECT_EQ(one.world.state.stop.mode, StopMode::kFaultAlongPlan);
+  EXPECT_EQ(one.world.state.stop.rate_begin, 1);
+}
+
+TEST(StopMotion, AStopThatBeginsBesideThePathComesBackToIt) {
+  Cutting one, beside;
+  for (Cutting* it : {&one, &beside}) {
+    Cycle c = it->cycle();
+    begin_stop(c, StopKind::kHold);
+    ASSERT_EQ(it->world.state.stop.mode, StopMode::kOnPath);
+    if (it == &beside) {
+      it->world.state.stop.deviation[1] = 0.5;
+      it->world.state.stop.deviation_time = 0.02;
+    }
+    ASSERT_TRUE(follow_stop(c));
+  }
+  const CycleState &on = one.world.state, &off = beside.world.state;
+  EXPECT_EQ(off.joints[0], on.joints[0]);
+  EXPECT_GT(off.joints[1] - on.joints[1], 0.3) << "most of it is left";
+  EXPECT_LT(off.joints[1] - on.joints[1], 0.5);
+  while (!is_stop_over(off.stop)) {
+    Cycle c = beside.cycle(), d = one.cycle();
+    ASSERT_TRUE(follow_stop(c) && follow_stop(d));
+  }
+  EXPECT_EQ(off.joints, on.joints) << "nothing is left";
+}
+
+TEST(StopMotion, AHoldEndsInTheTailOfItsWindowOnlyWhereTheProgramCanGoOnFromThere) {
+  Cutting open, behind(1, 4);
+  for (const State state : {State::kHolding, State::kAborting, State::kFaultStop}) {
+    open.world.state.state = behind.world.state.state = state;
+    EXPECT_TRUE(may_keep_tail(open.cycle())) << "the planner remembers its window";
+    EXPECT_EQ(may_keep_tail(behind.cycle()), state != State::kHolding)
+        << "three windows later it does not: of a program that is void it need not";
+  }
+  behind.world.state.state = State::kHolding;
+  behind.world.state.rate = RateFilter({0.1, 1});  // rests in 5 s of plan time
+  behind.world.state.rate.reset(1);
+  EXPECT_TRUE(may_keep_tail(behind.cycle())) << "nothing else would end the hold";
+}
+
+TEST(StopMotion, AFaultStopLeavesThePlanOnlyForALawThatSlowsDownSoAnyway) {
+  Cutting one;  // at 100 mm/s, with authority for 3000 mm/s² and 120 000 mm/s³
+  const StopMargin authority{3000, 120'000};
+  const auto is_reckoned_at = [&](double ds, double dds) {
+    one.world.state.on_path.ds = ds;
+    one.world.state.on_path.dds = dds;
+    return is_reckoned_with(one.cycle(), authority);
+  };
+  EXPECT_TRUE(is_reckoned_at(100, 0));
+  EXPECT_TRUE(is_reckoned_at(80, 400)) << "where it gains speed";
+  EXPECT_TRUE(is_reckoned_at(80, -2000)) << "the law would come down from 96.7 mm/s like that";
+  EXPECT_FALSE(is_reckoned_at(85, -2000)) << "from more than the plan has";
+  EXPECT_FALSE(is_reckoned_at(50, -3100)) << "harder than the law ever is";
 }
 
 }  // namespace

@@ -48,9 +48,23 @@ TEST(StopStretch, CountsItsPathFromTheBeginOfItsFirstCell) {
   EXPECT_NEAR(parts[2].cell_begin, 2 * kH, 1e-12);
   EXPECT_NEAR(parts[2].begin.s, 2 * kH + 0.1, 1e-12);
   EXPECT_EQ(parts[2].duration, 0.01);
-  EXPECT_NEAR(parts[0].between[1].s, 0.1 + 10 * 0.005 + 0.5 * 100 * 0.005 * 0.005, 1e-12);
+  for (const std::size_t quarter : {1U, 2U, 3U}) {
+    const double time = 0.0025 * static_cast<double>(quarter);
+    EXPECT_NEAR(parts[0].between[quarter - 1].s, 0.1 + 10 * time + 0.5 * 100 * time * time, 1e-12);
+    EXPECT_NEAR(parts[0].between[quarter - 1].ds, 10 + 100 * time, 1e-12);
+  }
   EXPECT_NEAR(stretch.end().s, 2 * kH + 0.1 + 12 * 0.01 + 0.5 * 100 * 1e-4, 1e-12);
   EXPECT_NEAR(stretch.end().ds, 13, 1e-12);
+}
+
+TEST(StopStretch, BeginsInTheCellOfItsFirstPieceWhereTheNextIsInAnother) {
+  const Pieces made;
+  const StopStretch stretch(made.cells.grid, {made.pieces.data() + 1, 2},
+                            {made.times.data() + 1, 2});
+  EXPECT_EQ(stretch.parts()[0].cell, 4);
+  EXPECT_EQ(stretch.parts()[0].cell_begin, 0);
+  EXPECT_NEAR(stretch.parts()[0].begin.s, 0.2, 1e-12);
+  EXPECT_NEAR(stretch.parts()[1].cell_begin, 2 * kH, 1e-12);
 }
 
 TEST(StopStretch, IsSlowerAtAnotherRateAndTakesLonger) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "unit/planner/singular/wrist_path.hpp"
 
@@ -109,6 +110,65 @@ TEST(PassJoints, SettleFarFromTheBaseAxisAndNotBesideIt) {
   EXPECT_FALSE(settles(task, pass, over_base));
   pass.at = SingularSet::kShoulder;
   EXPECT_TRUE(settles(task, pass, over_base));
+}
+
+/// What is left of a small turn of the yaw where the wrist, with its roll as it is, takes the axis
+/// nearest to the one that it had, and the wrist point of that axis turns the yaw anew.
+double left_of_a_turn(const MachineModel& model, const JointVector& q) {
+  constexpr double kTurn = 1e-6;
+  const double tool = model.tool_length_mm;
+  const ToolPose pose = forward(model, tool, q);
+  JointVector turned = q;
+  turned[robot::kYaw] += kTurn;
+  const auto axis_with = [&](double bend) {
+    turned[robot::kBend] = bend;
+    return forward(model, tool, turned).axis;
+  };
+  const double bend =
+      std::atan2(pose.axis.dot(axis_with(0.5 * std::numbers::pi)), pose.axis.dot(axis_with(0)));
+  const auto yaw_of = [&](const Vector3& axis) {
+    const ToolPose at = pose_in_machine(model, ToolPose{pose.tip, axis});
+    const auto wrist = robot::wrist_point<double>(model.robot, tool, at);
+    return std::atan2(wrist[1], wrist[0]);
+  };
+  return std::abs(yaw_of(axis_with(bend)) - yaw_of(pose.axis)) / kTurn;
+}
+
+TEST(PassJoints, SettleWhereARoundLeavesLessThanHalfOfATurnOfTheYaw) {
+  const WristPath path(0.001);
+  const PassTask task = path.task();
+  const RobotPass pass = turning(path, 0.3, 0.5);
+  int settled = 0, unsettled = 0;
+  for (const double forearm : {0.9, 1.3, 2.2}) {
+    for (const auto& [bend, roll] : {std::pair{0.6, 0.0}, {-0.8, 0.0}, {0.01, 0.7}, {0.01, 1.2}}) {
+      for (double off_axis_mm = 20; off_axis_mm < 400; off_axis_mm += 10) {
+        JointVector q = path.middle;
+        q[robot::kYaw] = 0.2;
+        q[robot::kShoulder] = std::acos(off_axis_mm / 700 - std::cos(forearm));
+        q[robot::kElbow] = forearm - q[robot::kShoulder];
+        q[robot::kBend] = bend;
+        q[robot::kRoll] = roll;
+        const double left = left_of_a_turn(path.model, q);
+        if (std::abs(left - 0.5) < 0.02) continue;
+        EXPECT_EQ(settles(task, pass, q), left < 0.5) << left;
+        ++(left < 0.5 ? settled : unsettled);
+      }
+    }
+  }
+  EXPECT_GT(settled, 100);
+  EXPECT_GT(unsettled, 30);
+}
+
+TEST(PassJoints, TakeTheTimeInTheMiddleOfEveryStep) {
+  WristPath path(0.001);
+  path.model.joints[robot::kRoll].limits.velocity = 0.1;
+  const PassTask task = path.task();
+  RobotPass pass = turning(path, 0, 1);
+  pass.joint = {0, 0.2, 0.4, 0.5, 0.52, 0.52};  // it begins fast and comes to rest
+  const double coarse = time_on_pass(task, pass, path.begin_joints, 20);
+  const double fine = time_on_pass(task, pass, path.begin_joints, 500);
+  EXPECT_GT(fine, 0.52 / 0.1);
+  EXPECT_NEAR(coarse, fine, 0.01 * fine);
 }
 
 TEST(PassJoints, TakeTheTimeOfTheFeedWhereNoJointIsSlower) {

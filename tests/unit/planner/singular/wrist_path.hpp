@@ -4,18 +4,23 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/pose_at.hpp"
+#include "service/core/planner/singular/pole_time.hpp"
 #include "service/core/planner/singular/robot_pass.hpp"
 #include "support/family_machines.hpp"
 
-/// A straight path of a 6R robot past its wrist singularity.
+/// A straight path of a 6R robot past its wrist singularity, in the middle of its reach or over its
+/// base axis.
 namespace meridian::test::wrist_path {
 
 /// The tool goes 20 mm of u and tilts by 0.004 rad a mm; at u = 10 mm the bend is `beside_rad`.
 struct WristPath : SpanLookup {
-  explicit WristPath(double beside_rad) {
+  explicit WristPath(double beside_rad) : WristPath(beside_rad, 1.2, -1.9) {}
+  /// With shoulder and elbow so at u = 10 mm.
+  WristPath(double beside_rad, double shoulder, double elbow) {
     for (JointSpec& joint : model.joints) {
       joint.limits.velocity = 3;
       joint.limits.acceleration = 100;
@@ -24,8 +29,8 @@ struct WristPath : SpanLookup {
       joint.limits.travel_max = 6;
     }
     middle[robot::kYaw] = 0.2;
-    middle[robot::kShoulder] = 1.2;
-    middle[robot::kElbow] = -1.9;
+    middle[robot::kShoulder] = shoulder;
+    middle[robot::kElbow] = elbow;
     middle[robot::kRoll] = 0.4;
     middle[robot::kBend] = beside_rad;
     const ToolPose at = forward(model, model.tool_length_mm, middle);
@@ -55,6 +60,10 @@ struct WristPath : SpanLookup {
     return {model, *this, axes, tips, model.tool_length_mm, 0.002, 0.01, false};
   }
 
+  [[nodiscard]] Solution<Jet<2>> exact(double u, const JointVector& near) const {
+    return solve(model, model.tool_length_mm, pose_of<Jet<2>>(span, u), branch, near);
+  }
+
   static constexpr double kLength_mm = 20, kTilt_rad_per_mm = 0.004;
   MachineModel model = robot_machine(true);
   JointVector middle{}, begin_joints{};
@@ -63,5 +72,12 @@ struct WristPath : SpanLookup {
   ProgrammedAxis axes;
   ProgrammedTip tips{true};
 };
+
+/// Past both singularities: at u = 10 mm the wrist point is `off_axis_mm` beside the base axis.
+[[nodiscard]] inline WristPath path_past_both(double beside_rad, double off_axis_mm) {
+  const double lean = 0.5;  // upper arm and forearm to either side, 700 mm each
+  const double shoulder = std::acos(off_axis_mm / 700 - std::sin(lean));
+  return {beside_rad, shoulder, 0.5 * std::numbers::pi - lean - shoulder};
+}
 
 }  // namespace meridian::test::wrist_path
