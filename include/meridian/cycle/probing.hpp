@@ -49,12 +49,11 @@ enum class ProbeNews : std::uint8_t {
 /// drives took, this cycle's own count, and the arrivals: the largest.
 [[nodiscard]] inline std::uint64_t periods_of_contact(const Cycle& c) noexcept {
   const Probing& probing = c.state.probing;
-  const std::uint64_t own = c.in.cycle - probing.free_cycle;
-  const std::uint64_t seen =
-      c.drives.cycle_seen > probing.free_seen ? c.drives.cycle_seen - probing.free_seen : 0;
+  const auto own = static_cast<std::int64_t>(c.in.cycle - probing.free_cycle);
+  const auto seen = static_cast<std::int64_t>(c.drives.cycle_seen - probing.free_seen);
   const std::int64_t between_ns = c.drives.arrival_ns - probing.free_arrival_ns;
   const std::int64_t arrived = (between_ns + c.machine.cycle_ns / 2) / c.machine.cycle_ns;
-  return std::max({own, seen, static_cast<std::uint64_t>(std::max<std::int64_t>(arrived, 1))});
+  return static_cast<std::uint64_t>(std::max({own, seen, arrived}));
 }
 
 /// Keeps a report without contact while one is sought: the other end of the interval that holds it.

@@ -16,10 +16,8 @@ struct Row {
   double p = 0, r = 0, limit = 0;
 };
 
-struct Rows {
-  std::array<Row, 4 * kMaxLimited> row;
-  int count = 0;
-
+class Rows {
+ public:
   Rows(const FeedCell& cell, const FeedLimits& limits) noexcept {
     const double per_length = 0.5 / cell.h;
     const CellSample &left = cell.at.front(), &right = cell.at.back();
@@ -29,10 +27,17 @@ struct Rows {
       add(r + right.d2[i], -r, limits.acceleration[i]);
     }
   }
+  [[nodiscard]] const Row* begin() const noexcept { return row_.data(); }
+  [[nodiscard]] const Row* end() const noexcept { return row_.data() + count_; }
+
+ private:
   void add(double p, double r, double limit) noexcept {
-    row[static_cast<std::size_t>(count++)] = {p, r, limit};
-    row[static_cast<std::size_t>(count++)] = {-p, -r, limit};
+    row_[static_cast<std::size_t>(count_++)] = {p, r, limit};
+    row_[static_cast<std::size_t>(count_++)] = {-p, -r, limit};
   }
+
+  std::array<Row, 4 * kMaxLimited> row_;
+  int count_ = 0;
 };
 
 /// A bound of b₁ as a function of b₀.
@@ -41,17 +46,15 @@ struct Line {
   [[nodiscard]] double at(double b0) const noexcept { return slope * b0 + offset; }
 };
 
-/// Largest b₀ <= `most` for which a b₁ in [0, `behind`] keeps every row.
+/// Largest b₀ <= `largest` for which a b₁ in [0, `after`] keeps every row.
 double largest_begin(const Rows& rows, double largest, double after) noexcept {
   double b0 = largest;
-  for (int n = 0; n < rows.count; ++n) {
-    const Row& row = rows.row[static_cast<std::size_t>(n)];
+  for (const Row& row : rows) {
     if (std::abs(row.p) <= kNone && row.r > kNone) b0 = std::min(b0, row.limit / row.r);
   }
   for (int round = 0; round < kMaxRounds; ++round) {
     Line high{0, after}, low{0, 0};
-    for (int n = 0; n < rows.count; ++n) {
-      const Row& row = rows.row[static_cast<std::size_t>(n)];
+    for (const Row& row : rows) {
       if (std::abs(row.p) <= kNone) continue;
       const Line line{-row.r / row.p, row.limit / row.p};
       if (row.p > 0) {
@@ -82,8 +85,7 @@ void two_pass(const CellGrid& grid, const FeedLimits& limits, std::int64_t first
   for (std::size_t k = 0; k < n; ++k) {
     const Rows rows(grid[first + static_cast<std::int64_t>(k)], limits);
     double y = backward[k + 1];
-    for (int i = 0; i < rows.count; ++i) {
-      const Row& row = rows.row[static_cast<std::size_t>(i)];
+    for (const Row& row : rows) {
       if (row.p > kNone) y = std::min(y, (row.limit - row.r * b[k]) / row.p);
     }
     b[k + 1] = std::max(y, 0.0);

@@ -170,7 +170,7 @@ PathFault Router::approach_by(const ToolPose& target, const Candidate& candidate
       down > 0 ? solve_near(lifted(target, down), candidate.joints, cursor.tool_length_mm).q
                : candidate.joints;
   if (largest_difference(over, cursor.joints) > kThere) {
-    fault = run(make_joint_move(cursor.joints, over, rotary), rapid, 0, cursor, out);
+    fault = run(make_joint_move(cursor.joints, over, rotary), rapid, kNoPart, cursor, out);
     if (is_fault(fault)) return fault;
   }
   if (down > 0) {
@@ -279,7 +279,7 @@ PathFault Router::approach_joints(const ClBlock& block, const JointVector& to, P
   const Job job{block, MotionKind::kApproach, 0,
                 path.length > 0 ? job_of(block).feed_mm_per_s / path.length : 0};
   if (largest_difference(to, cursor.joints) > kThere) {
-    const PathFault fault = run(path, job, 1, cursor, out);
+    const PathFault fault = run(path, job, kWhole, cursor, out);
     if (is_fault(fault)) return fault;
   }
   cursor.pose = forward(model_, cursor.tool_length_mm, cursor.joints);

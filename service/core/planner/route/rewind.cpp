@@ -135,7 +135,7 @@ PathFault Router::turn_on_branch(const RewindTarget& target, const Job& rapid, P
   JointVector turned = cursor.joints;
   turned[free] += target.turns * kTurn_rad;
   const std::uint32_t rotary = 1U << static_cast<unsigned>(free);
-  return run(make_joint_move(cursor.joints, turned, rotary), rapid, 0, cursor, out);
+  return run(make_joint_move(cursor.joints, turned, rotary), rapid, kNoPart, cursor, out);
 }
 
 PathFault Router::turn_through_pole(const ToolPose& over, const RewindTarget& target,
@@ -150,7 +150,7 @@ PathFault Router::turn_through_pole(const ToolPose& over, const RewindTarget& ta
   for (const Vector3& pole : {nearest, Vector3(-nearest)}) {
     cursor = begin;
     out.go_back(mark);
-    fault = enter_pole(make_line(over, {over.tip, pole}), rapid, 1, cursor, out);
+    fault = enter_pole(make_line(over, {over.tip, pole}), rapid, kWhole, cursor, out);
     if (is_fault(fault)) continue;
     fault = leave_pole_by(make_line({over.tip, pole}, over), end.q, rapid, cursor, out);
     if (!is_fault(fault)) break;

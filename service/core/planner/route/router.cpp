@@ -89,7 +89,7 @@ Router::Candidates Router::find_candidates(const ToolPose& pose,
     for (int i = 0; i < limited_count(model_); ++i) {
       cost = std::max(cost, std::abs(to[i] - from[i]) / limited_spec(model_, i).limits.velocity);
     }
-    candidates.candidate[candidates.count++] = {q, cost, branch, 0, {}};
+    candidates.candidate[candidates.count++] = {q, cost, branch};
   };
   for (int branch = 0; branch < branch_count(model_); ++branch) {
     auto at = solve(model_, cursor.tool_length_mm, pose, branch, cursor.joints);
@@ -144,9 +144,9 @@ PathFault Router::run_held(PathPiece path, double free_end, const Job& job, doub
 PathFault Router::run_lift(const PathPiece& path, const Job& job, PlanCursor& cursor,
                            Staging& out) noexcept {
   const int free = redundant_joint(model_);
-  if (free >= 0) return run_held(path, cursor.joints[free], job, 1.0, cursor, out);
+  if (free >= 0) return run_held(path, cursor.joints[free], job, kWhole, cursor, out);
   if (job.motion != MotionKind::kApproach || model_.family != MachineFamily::kRobot) {
-    return run_solved(path, job, 1.0, cursor, out);
+    return run_solved(path, job, kWhole, cursor, out);
   }
   // A robot may lift off beside a singular place: slowly at first, and with rests faster and
   // faster.
@@ -157,7 +157,7 @@ PathFault Router::run_lift(const PathPiece& path, const Job& job, PlanCursor& cu
                                pose_at(path, s));
   };
   const bool begins_near = is_near(0), ends_near = is_near(path.length);
-  if (!begins_near && !ends_near) return run_solved(path, job, 1.0, cursor, out);
+  if (!begins_near && !ends_near) return run_solved(path, job, kWhole, cursor, out);
   for (std::size_t n = 1; n < kParts.size(); ++n) {
     const double from = begins_near ? kParts[n - 1] : 1 - kParts[kParts.size() - n];
     const double to = begins_near ? kParts[n] : 1 - kParts[kParts.size() - 1 - n];
@@ -235,11 +235,11 @@ PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) 
     return fault;
   }
   if (free < 0) {
-    fault = run_solved(path, job, 1.0, cursor, out);
+    fault = run_solved(path, job, kWhole, cursor, out);
   } else if (is_at_pole(cursor.pose.axis)) {
     fault = leave_pole(path, end, job, cursor, out);
   } else if (is_at_pole(end.axis)) {
-    fault = enter_pole(path, job, 1.0, cursor, out);
+    fault = enter_pole(path, job, kWhole, cursor, out);
   } else {
     const PolePassage passage = find_passage(path, find_nearest_pole(model_, cursor.pose.axis));
     const double share = passage.nearest_turn / path.axis_turn;
@@ -247,7 +247,7 @@ PathFault Router::route(const ClBlock& block, PlanCursor& cursor, Staging& out) 
     const PlanCursor rest = cursor;
     const Staging::Mark mark = out.mark();
     fault = passes ? pass_pole(path, end, share, job, cursor, out)
-                   : run_solved(path, job, 1.0, cursor, out);
+                   : run_solved(path, job, kWhole, cursor, out);
     const bool is_out = fault.kind == PathFault::Kind::kTravel && fault.joint == free;
     if (is_out && pole_distance(model_, rest.pose.axis) < free_cone_rad_) {
       out.go_back(mark);

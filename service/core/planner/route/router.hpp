@@ -111,6 +111,8 @@ class Router {
 
  private:
   static constexpr int kMaxCandidates = 24;
+  /// Of a block, the share that a leg is: all of it, or none where the block's time is not its own.
+  static constexpr double kWhole = 1, kNoPart = 0;
 
   /// A value of the redundant joint at the end of a way, from one branch and winding.
   struct Candidate {
@@ -118,7 +120,7 @@ class Router {
     double cost = 0;
     int branch = 0;
     int carries = 0;  ///< blocks ahead, where they were looked at
-    std::optional<BlockReject> lost;
+    std::optional<BlockReject> lost{};
   };
   struct Candidates {
     std::array<Candidate, kMaxCandidates> candidate;

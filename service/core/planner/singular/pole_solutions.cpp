@@ -23,7 +23,7 @@ PathFault Router::turn_free(const ToolPose& pose, double free_end, const Job& jo
                             PlanCursor& cursor, Staging& out) noexcept {
   const double free = cursor.joints[redundant_joint(model_)];
   if (std::abs(free_end - free) < kSameFree_rad) return {};
-  return run(make_turn(pose, free, free_end), job, 0, cursor, out);
+  return run(make_turn(pose, free, free_end), job, kNoPart, cursor, out);
 }
 
 double Router::follow_back(PathPiece path, const JointVector& end, double share,
@@ -68,7 +68,7 @@ PathFault Router::leave_pole_by(const PathPiece& path, const JointVector& end, c
   const bool is_near = path.axis_turn <= kNearPole_rad;
   if (is_near || is_straight_passage(path, end[free], turned, kPoleDeviation_rad)) {
     const PathFault fault = turn_free(pole, end[free], job, cursor, out);
-    return is_fault(fault) ? fault : run_held(path, cursor.joints[free], job, 1.0, cursor, out);
+    return is_fault(fault) ? fault : run_held(path, cursor.joints[free], job, kWhole, cursor, out);
   }
   const double near = kNearPole_rad / path.axis_turn;
   const double limit = follow_back(path, end, near, cursor.tool_length_mm);

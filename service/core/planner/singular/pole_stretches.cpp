@@ -107,7 +107,7 @@ PoleStretches::ProbeIndex PoleStretches::find_hold(double begin) const noexcept 
 
 double PoleStretches::find_room_after(double core_end) const noexcept {
   const double room = std::min(kPoleReach_mm, kReachShare * (probes_.end_u() - core_end));
-  for (ProbeIndex n = run_.seen + 1;
+  for (ProbeIndex n = run_.seen;
        n + 1 < probes_.end_probe() && probes_.u_of(n) < core_end + 2 * kPoleReach_mm; ++n) {
     if (is_close(n)) return std::min(room, kHalf * (probes_.u_of(n) - core_end));
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <vector>
 
 #include "support/family_machines.hpp"
 #include "support/machines.hpp"
@@ -67,6 +68,36 @@ TEST(ApproachLift, OfARobotEndsASixteenthAtMostBeforeAJointIsOutsideTravel) {
     EXPECT_FALSE(is_fault(one.fault));
     EXPECT_NEAR(one.lift_mm, std::floor(16 * share) / 16 * kClearance_mm, kRounding);
   }
+}
+
+/// Where a tool of `model` is that stands with the bend at `bend`.
+ToolPose pose_with_bend(const MachineModel& model, double bend, double elbow) {
+  JointVector q{};
+  q[robot::kShoulder] = 1.2;
+  q[robot::kElbow] = elbow;
+  q[robot::kRoll] = 0.4;
+  q[robot::kBend] = bend;
+  return forward(model, model.tool_length_mm, q);
+}
+
+TEST(ApproachLift, OfARobotBesideASingularPlaceIsInPartsTheShortestNextToIt) {
+  const MachineModel model = robot();
+  const auto parts_of = [&](double bend, double elbow = -1.9) {
+    const Lifted one(model, pose_with_bend(model, bend, elbow));
+    EXPECT_FALSE(is_fault(one.fault));
+    EXPECT_NEAR(one.lift_mm, kClearance_mm, kRounding);
+    std::vector<double> parts;
+    for (const PathPiece& path : one.paths()) parts.push_back(path.length / kClearance_mm);
+    return parts;
+  };
+  const auto expect_same = [](const std::vector<double>& got, const std::vector<double>& wanted) {
+    ASSERT_EQ(got.size(), wanted.size());
+    for (std::size_t n = 0; n < got.size(); ++n) EXPECT_NEAR(got[n], wanted[n], 1e-9);
+  };
+  // Nearer than 0.35 rad counts as beside it, and the lift turns the bend by some hundredths.
+  expect_same(parts_of(0.6), {1});
+  expect_same(parts_of(0.345), {1.0 / 64, 3.0 / 64, 3.0 / 16, 3.0 / 4});
+  expect_same(parts_of(0.36, -2.4), {3.0 / 4, 3.0 / 16, 3.0 / 64, 1.0 / 64});
 }
 
 TEST(ApproachLift, IsWholeWhereTheTipBoxIsWide) {

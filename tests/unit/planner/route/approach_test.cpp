@@ -119,6 +119,8 @@ TEST(Approach, GoesOnFromWhereTheToolWasRetracted) {
   EXPECT_TRUE(one.cursor.has_retracted);
   EXPECT_NEAR((one.cursor.pose.tip - 50 * tilted(0.3, 0.4)).norm(), 0, kRounding);
   const double up_s = duration_of(*one.staged);
+  EXPECT_LT(up_s, 0.9) << "by a rapid";
+  EXPECT_EQ(one.staged->times[0].feed_mm_per_s, 0);
   ASSERT_FALSE(is_fault(one.router.approach(block, one.cursor, *one.staged)));
   ASSERT_EQ(one.paths().size(), 3U) << "up once";
   EXPECT_EQ(one.paths()[1].kind, PathKind::kJoint);

@@ -128,6 +128,20 @@ TEST(Router, KnowsWhatIsInReachAndTravel) {
   EXPECT_FALSE(one.router.is_reachable(cut({100, 0, 0}, tilted(0.5, 2)), one.cursor));
 }
 
+TEST(Router, ReachesAWindingFourTurnsAwayEitherWayAndNoFarther) {
+  for (const int turns : {-5, -4, 4, 5}) {
+    Routed one(lai_machine());
+    const Vector3 axis = tilted(0.5, 2);
+    one.stand_at({{0, 0, 0}, axis});
+    const ToolPose end{{100, 0, 0}, axis};
+    const auto there = solve(one.model, one.cursor.tool_length_mm, end, 0, one.cursor.joints);
+    JointLimits& limits = one.model.joints[3].limits;
+    limits.travel_min = there.q[3] + turns * kTurn_rad - 0.1;
+    limits.travel_max = limits.travel_min + 0.2;
+    EXPECT_EQ(one.router.is_reachable(cut({100, 0, 0}, axis), one.cursor), std::abs(turns) == 4);
+  }
+}
+
 TEST(Router, SaysWhichJointLeavesTravel) {
   Routed one(lai_machine());
   one.stand_at({{0, 0, 0}, tilted(0.3, 0.4)});
