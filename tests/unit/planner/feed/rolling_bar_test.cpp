@@ -21,6 +21,16 @@ TEST(RollingBar, OneProgrammeIsEnoughWhereAWindowGoesOnAsTheOneBefore) {
   }
 }
 
+TEST(RollingBar, OneProgrammeIsEnoughWhereTheLimitsAreFarThoughThePlanBeforeComesToRest) {
+  // Braking takes thirty of these cells: the window goes on fast where the one before rests.
+  Rolled one;
+  one.add_straight(60, 1.0, 10, 80);
+  one.run();
+  const FeedCount& count = one.feed.count();
+  EXPECT_GT(count.windows, 8);
+  EXPECT_LE(count.solves, count.windows + 3);
+}
+
 TEST(RollingBar, ASecondProgrammeGainsWhereTheFirstLeadsAway) {
   const auto swing_s = [](int refinements) {
     MachineModel model = bench_machine();
@@ -36,6 +46,7 @@ TEST(RollingBar, ASecondProgrammeGainsWhereTheFirstLeadsAway) {
   };
   const double once = swing_s(1), twice = swing_s(2), thrice = swing_s(3);
   EXPECT_LT(twice, 0.94 * once);
+  EXPECT_LT(once, 1.09 * twice) << "the first one is made around the plan of the window before";
   EXPECT_LE(thrice, twice);
   EXPECT_GT(thrice, 0.99 * twice) << "more of them hardly gain";
 }

@@ -177,6 +177,20 @@ TEST(RollingFeed, ASlowCellNearARestDoesNotMakeTheMotionCrawl) {
   }
 }
 
+TEST(RollingFeed, AStartKeepsTheSpeedOfTheElevenCellsBesideTheRest) {
+  const auto speed_behind_start = [](int slow_cell) {
+    Rolled one;
+    one.add_straight(1, 0.32 * slow_cell, slow_cell, 80);
+    one.add_straight(1, 0.32, 1, 15);
+    one.add_straight(1, 64, 200, 80);
+    one.run();
+    return state_on(one.windows.front().committed.front(), 1).ds;
+  };
+  const double bound = speed_behind_start(11), free = speed_behind_start(12);
+  EXPECT_LT(bound, 15.1) << "the twelfth cell from the rest on";
+  EXPECT_GT(free, 18);
+}
+
 /// Beyond the old plan a tangent at a bound without jerk asks for less than the jerk there.
 TEST(RollingFeed, GoesOnWhereThePlanBeforeSlowedDownForJerk) {
   MachineModel model = bench_machine();
