@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/core/planner/singular/pole_string.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "unit/planner/singular/walled_path.hpp"
+
+namespace meridian::test::pole_string {
+namespace {
+
+using pole_walls::kTolerance_rad;
+using pole_walls::Walled;
+
+constexpr int kFree = 3;
+
+/// The way of the redundant joint past the pole, `beside` off it.
+struct Found {
+  explicit Found(double beside) : path(beside) {
+    path.pass.known_end = 100;
+    const auto pieces = string.find(path.task, path.pass);
+    zones.assign(pieces.begin(), pieces.end());
+  }
+  [[nodiscard]] double turn() const {
+    return zones.back().free.back() - zones.front().free.front();
+  }
+
+  Walled path;
+  PoleString string;
+  std::vector<PoleZone> zones;
+};
+
+TEST(PoleString, LeadsThroughThePoleWhereTheToleranceLetsIt) {
+  const Found one(0.0005);
+  ASSERT_FALSE(one.zones.empty());
+  EXPECT_FALSE(one.string.is_exact_best());
+  EXPECT_TRUE(one.zones.front().is_through);
+  EXPECT_NE(one.zones.back().branch_after, one.path.pass.branch);
+  EXPECT_LT(std::abs(one.turn()), 0.2) << "the exact way turns by half a turn";
+}
+
+TEST(PoleString, CoversTheStretchInPiecesThatJoin) {
+  for (const double beside : {0.0005, 0.002}) {
+    const Found one(beside);
+    ASSERT_FALSE(one.zones.empty());
+    EXPECT_EQ(one.zones.front().begin, one.path.pass.begin);
+    EXPECT_EQ(one.zones.back().end, one.path.pass.end);
+    for (std::size_t n = 0; n < one.zones.size(); ++n) {
+      const PoleZone& zone = one.zones[n];
+      EXPECT_EQ(zone.is_first, n == 0);
+      EXPECT_EQ(zone.is_last, n + 1 == one.zones.size());
+      EXPECT_FALSE(zone.is_held);
+      if (n == 0) continue;
+      const PoleZone& before = one.zones[n - 1];
+      EXPECT_EQ(zone.begin, before.end);
+      const Jet<3> a = free_at(before.free, 1, before.end - before.begin);
+      const Jet<3> b = free_at(zone.free, 0, zone.end - zone.begin);
+      EXPECT_NEAR(value_of(a), value_of(b), 1e-9);
+      EXPECT_NEAR(a.derivative(1), b.derivative(1), 1e-7);
+      EXPECT_NEAR(a.derivative(2), b.derivative(2), 1e-5);
+    }
+  }
+}
+
+TEST(PoleString, KeepsTheAxisInsideItsToleranceAndMeetsTheExactWay) {
+  for (const double beside : {0.0005, 0.002}) {
+    const Found one(beside);
+    ASSERT_FALSE(one.zones.empty());
+    double largest = 0;
+    for (const PoleZone& zone : one.zones) {
+      for (int k = 0; k <= 50; ++k) {
+        const double u = zone.begin + (zone.end - zone.begin) * k / 50;
+        largest = std::max(largest, one.path.off_at(u, quintic_at(zone.free, k / 50.0)));
+      }
+    }
+    EXPECT_LE(largest, kTolerance_rad);
+    EXPECT_NEAR(one.zones.front().deviation_rad, largest, 0.1 * kTolerance_rad);
+    const PolePass& pass = one.path.pass;
+    EXPECT_NEAR(one.zones.front().free.front(), pass.joints[kFree], 1e-9);
+    const JointVector end = one.path.joints_at(pass.end, one.zones.back().branch_after);
+    EXPECT_NEAR(std::remainder(one.zones.back().free.back() - end[kFree], 2 * std::numbers::pi), 0,
+                1e-6);
+  }
+}
+
+TEST(PoleString, LeavesTheExactWayToItselfWhereItIsFaster) {
+  const Found far(0.2);
+  EXPECT_TRUE(far.zones.empty());
+  EXPECT_TRUE(far.string.is_exact_best());
+}
+
+}  // namespace
+}  // namespace meridian::test::pole_string
