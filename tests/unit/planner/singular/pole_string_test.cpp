@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 
 #include "unit/planner/singular/walled_path.hpp"
@@ -19,8 +20,10 @@ constexpr int kFree = 3;
 
 /// The way of the redundant joint past the pole, `beside` off it.
 struct Found {
-  explicit Found(double beside) : path(beside) {
+  explicit Found(double beside, double winding_rad = 0, bool is_exact = false) : path(beside) {
     path.pass.known_end = 100;
+    path.pass.joints[kFree] += winding_rad;
+    path.task.is_exact = is_exact;
     const auto pieces = string.find(path.task, path.pass);
     zones.assign(pieces.begin(), pieces.end());
   }
@@ -84,6 +87,22 @@ TEST(PoleString, KeepsTheAxisInsideItsToleranceAndMeetsTheExactWay) {
     EXPECT_NEAR(std::remainder(one.zones.back().free.back() - end[kFree], 2 * std::numbers::pi), 0,
                 1e-6);
   }
+}
+
+TEST(PoleString, StaysOnTheWindingThatTheJointComesOn) {
+  for (const double beside : {0.0005, 0.002}) {
+    const Found one(beside), wound(beside, 2 * std::numbers::pi);
+    ASSERT_EQ(wound.zones.size(), one.zones.size());
+    EXPECT_NEAR(wound.zones.front().free.front() - one.zones.front().free.front(),
+                2 * std::numbers::pi, 1e-9);
+    EXPECT_NEAR(wound.turn(), one.turn(), 1e-9);
+  }
+}
+
+TEST(PoleString, LeadsThroughWhereTheSmoothedAxisCountsInsteadOfTheProgrammed) {
+  const Found one(0.0005, 0, true);
+  ASSERT_FALSE(one.zones.empty());
+  EXPECT_TRUE(one.zones.front().is_through);
 }
 
 TEST(PoleString, LeavesTheExactWayToItselfWhereItIsFaster) {

@@ -83,6 +83,22 @@ TEST(RobotPass, PastTheWristFartherOffThanTheToleranceStaysOnItsSide) {
   EXPECT_NEAR(pass.joint.back() - pass.joint.front(), exact_turn(path, pass), 1e-5);
 }
 
+TEST(RobotPass, PastBothSingularitiesDrivesYawAndRollInsideBothTolerances) {
+  const WristPath path = wrist_path::path_past_both(1e-4, 0.005);
+  const PassTask task = path.task();
+  const RobotPass pass = find_robot_pass(task, range_about(path));
+  EXPECT_EQ(pass.at, SingularSet::kWristAndShoulder);
+  ASSERT_GT(pass.end, pass.begin);
+  JointVector q = path.begin_joints;
+  for (int k = 0; k <= 300; ++k) {
+    const double u = pass.begin + (pass.end - pass.begin) * k / 300;
+    q = joints_on_pass(task, pass, u, q).q;
+    const PassDeviation off = deviation_on_pass(task, pass, u, q);
+    EXPECT_LE(off.axis_rad, kAxisTolerance_rad) << u;
+    EXPECT_LE(off.tip_mm, task.tip_tolerance_mm) << u;
+  }
+}
+
 TEST(RobotPass, EndsAtRestWhereItMay) {
   const WristPath path(1e-4);
   PassRange range = range_about(path);
