@@ -77,6 +77,19 @@ TEST(Supervise, TheStopAfterAStallBeginsOnThePathAndLeadsBackToIt) {
   EXPECT_EQ(c.periods, 1);
 }
 
+TEST(Supervise, ADwellDoesNotCountPeriodsThatDrivesDidNotBridge) {
+  Program p;
+  p.plan.cut({5, 0, 0}, kLimits);
+  p.plan.barrier(TimeKind::kDwell, 5);
+  p.plan.barrier(TimeKind::kEnd);
+  p.run(0);
+  while (p.world.state.barrier_time == 0) p.world.run();
+  const double before = p.world.state.barrier_time;
+  p.world.run(static_cast<std::uint32_t>(p.machine.bridge_cycles) + 50);
+  EXPECT_NEAR(p.world.state.barrier_time - before, p.world.dt(), 1e-12);
+  EXPECT_EQ(p.world.now(), State::kRunning) << "at rest nothing is lost";
+}
+
 TEST(Supervise, JointsComeBackInsideTheirShareOfTheFaultLimits) {
   const JointLimits limits = bench_machine().joints[0].limits;
   for (const double deviation : {1e-4, 0.01, 0.5, -20.0}) {
@@ -100,6 +113,21 @@ TEST(Supervise, JointsComeBackInsideTheirShareOfTheFaultLimits) {
     EXPECT_LE(used, 1.01 * kReturnShare) << deviation;
     EXPECT_GT(used, 0.95 * kReturnShare) << deviation;
   }
+}
+
+TEST(Supervise, JointsComeBackNoFasterThanTheDrivesOfAStage) {
+  MachineModel machine = hybrid_machine();
+  const JointVector joints{10, 20, 30, 0.2, 0.1}, deviation{0, 0.5, 0, 0.01, 0};
+  const double free_s = time_to_return(machine, joints, deviation);
+  JointVector beside = joints;
+  for (std::size_t i = 0; i < beside.size(); ++i) beside[i] += deviation[i];
+  const int drive = machine.joint_count;  // the first of the stage
+  const auto n = static_cast<std::size_t>(drive);
+  const double by = std::abs(limited_of(machine, beside)[n] - limited_of(machine, joints)[n]);
+  machine.stage_drives[0].limits.velocity = 0.1;
+  const double slow_s = time_to_return(machine, joints, deviation);
+  EXPECT_NEAR(slow_s, 1.875 * 2 * by / kReturnShare / 0.1, 1e-9 * slow_s);
+  EXPECT_GT(slow_s, 2 * free_s);
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <vector>
 
 #include "meridian/kinematics/tip_over_base.hpp"
@@ -103,6 +103,20 @@ TEST(RobotLookAhead, GoesStraightThroughASingularPlaceWhereTheSlackLetsIt) {
   const std::vector<ClBlock> blocks{cut_to(path.pose(WristPath::kLength_mm))};
   EXPECT_EQ(follow_ahead(model, {0.01, 0.002}, start, blocks), 1);
   EXPECT_EQ(follow_ahead(model, {}, start, blocks), 0);
+}
+
+TEST(RobotLookAhead, ComesBackOutOfASingularPlaceOnTheSideThatItWentIn) {
+  const WristPath path(1e-4);
+  MachineModel model = path.model;
+  JointVector bent = path.begin_joints;
+  const double side = std::copysign(1.0, bent[robot::kBend]);
+  bent[robot::kBend] = 0.6 * side;
+  JointLimits& bend = model.joints[robot::kBend].limits;
+  (side > 0 ? bend.travel_min : bend.travel_max) = -0.3 * side;  // on the other side it ends
+  const RobotStart start{model.tool_length_mm, path.pose(0), path.branch, path.begin_joints};
+  const std::vector<ClBlock> blocks{cut_to(path.pose(10)), cut_to(path.pose(0)),
+                                    cut_to(forward(model, model.tool_length_mm, bent))};
+  EXPECT_EQ(follow_ahead(model, {0.01, 0.002}, start, blocks), 3);
 }
 
 }  // namespace
