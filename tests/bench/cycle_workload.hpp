@@ -169,7 +169,7 @@ class WindowedCycle : public DrivenCycle<SmoothPlanner> {
   }
 
  private:
-  static constexpr std::uint64_t kBlocks = 130;
+  static constexpr std::uint64_t kBlocks = 190;
 };
 
 /// Runs `n` cycles of a machine that cuts; returns a checksum of the setpoints, 0 if it does not
