@@ -104,7 +104,7 @@ inline void lay_out_stop(CycleState& state, const PathState& begin,
                                           const StopMargin& authority) noexcept {
   constexpr double kRounding = 1 + 1e-9;
   const TimePiece& piece = *c.reader.piece();
-  if (!(begin.dds > 0) || !(authority.jerk > 0) || !(piece.slow_velocity > 0)) return true;
+  if (!(begin.dds > 0) || !(authority.jerk > 0)) return true;
   const PathState plan = state_at(piece, c.state.piece_time);
   return peak_of(begin, authority) <= kRounding * peak_of(plan, authority);
 }

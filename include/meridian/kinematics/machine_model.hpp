@@ -52,12 +52,13 @@ enum class PolePolicy : std::uint8_t {
   kExact   ///< the joints follow the path, which slows down as the redundant joint needs it
 };
 
-/// What the planner does where the redundant joint would leave its travel within the program and
-/// tip and axis do not rest on the pole, where it turns in place whatever the policy.
+/// What the planner does where a joint would leave its travel within the program that another
+/// winding or branch keeps inside. Where tip and axis rest on the pole the redundant joint turns in
+/// place whatever the policy.
 enum class RewindPolicy : std::uint8_t {
   kRefuse,  ///< the block is refused
-  kRetract  ///< rest, off the part along the tool axis, whole turns of the redundant joint, back,
-            ///< on
+  kRetract  ///< rest, off the part along the tool axis, whole turns of the redundant joint or over
+            ///< the pole to the other branch, back, on
 };
 
 /// How the cuts of a program join.

@@ -26,7 +26,7 @@ struct BandTuning {
   int window = 96;        ///< control points that a window moves
   int commit = 48;        ///< of which so many are then final
   int iterations = 25;    ///< at most
-  double settled = 0.01;  ///< tolerances: an iteration that moves no sample farther is the last
+  double settled = 0.01;  ///< tolerances: an iteration that moves nothing farther is the last
   double smoothness = 3;  ///< weight of the third difference
   double relaxation = 1.6;
   double radius = 0.92;  ///< of the band at the samples, in tolerances

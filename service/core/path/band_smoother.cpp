@@ -224,8 +224,8 @@ void BandSmoother::pull_points() noexcept {
   }
 }
 
-/// Moves the samples to the spline, as far as their band lets them. By how much at most, in
-/// tolerances.
+/// Moves the samples to the spline, as far as their band lets them. By how much at most they or
+/// their multipliers moved, in tolerances.
 double BandSmoother::move_samples() noexcept {
   double moved = 0;
   for (std::size_t q = 0; q < samples_.size(); ++q) {
@@ -242,9 +242,9 @@ double BandSmoother::move_samples() noexcept {
     const double axis_share = axis > sample.axis ? sample.axis / axis : 1;
     for (std::size_t d = 0; d < 6; ++d) {
       const double inside = (d < 3 ? tip_share : axis_share) * e[d];
-      const double z = sample.y[d] + inside;
-      moved = std::max(moved, std::abs(z_[q][d] - z));
-      y_[q][d] = e[d] - inside;
+      const double z = sample.y[d] + inside, y = e[d] - inside;
+      moved = std::max({moved, std::abs(z_[q][d] - z), std::abs(y_[q][d] - y)});
+      y_[q][d] = y;
       z_[q][d] = z;
     }
   }

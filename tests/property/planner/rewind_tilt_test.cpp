@@ -136,7 +136,13 @@ TEST(RewindTilt, TurnsCBackBehindItWhereBothRunOut) {
       const auto trace = plan_smooth(one.model, one.blocks, one.start, {transition, 0, 0});
       check(one.model, trace, one.blocks, one.start, found);
       if (HasFatalFailure()) return;
-      EXPECT_GE(trace.rewinds.size(), 2U);
+      ASSERT_GE(trace.rewinds.size(), 2U);
+      EXPECT_TRUE(std::any_of(trace.rewinds.begin(), trace.rewinds.end(), [&](const Rewind& made) {
+        return made.joint == one.tilt && made.is_other_branch();
+      }));
+      EXPECT_TRUE(std::any_of(trace.rewinds.begin(), trace.rewinds.end(), [&](const Rewind& made) {
+        return made.joint == redundant_joint(one.model);
+      }));
     }
   }
 }
@@ -229,6 +235,8 @@ TEST(RewindTilt, KeepsLimitsTravelAndPathOfDrawnProgramsThatRun) {
       }
     }
   }
+  EXPECT_GT(of_tilt, 0);
+  EXPECT_GT(run, 2 * refused);
   std::printf(
       "%d run, %d refused, %d rewinds, %d of them for the tilt; v %.4f a %.4f j %.4f, "
       "off %.3f\n",

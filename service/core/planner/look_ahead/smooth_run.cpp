@@ -371,7 +371,8 @@ TimePiece SmoothRun::make_piece(const FeedPiece& piece, bool is_tail) const noex
   return time;
 }
 
-/// Hardly any tail is ever entered: its pieces share their authority to stop.
+/// Neighbouring pieces share their authority to stop; more of them in tails, of which hardly any is
+/// ever entered.
 bool SmoothRun::stage_pieces(MotionWriter& writer, std::span<const FeedPiece> pieces,
                              bool is_tail) noexcept {
   const std::size_t together = is_tail ? StopStretch::kMaxParts : kTogether;

@@ -79,7 +79,7 @@ TEST(SpanTravel, SaysWhereTheJointWouldComeToOutsideTravel) {
   EXPECT_NEAR(outside, begin + sense * 4.3, 2e-3) << "where that span ends";
 }
 
-TEST(SpanTravel, KeepsAMarginForWhatLiesBetweenItsPlaces) {
+TEST(SpanTravel, KeepsAMarginForWhatLiesBetweenItsPoints) {
   Followed path;
   const double sense = path.joints_at(1, path.start)[3] > path.start[3] ? 1 : -1;
   const double begin = path.start[3];
