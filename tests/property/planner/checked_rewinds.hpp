@@ -41,7 +41,7 @@ inline void check_turn_on_branch(const MachineModel& model, OpenRewind& open,
   const double off = (pose.tip - open.begin.tip).dot(open.begin.axis);
   const double turned = std::abs(now[free] - before[free]);
   // The setpoint before the first may be a cycle short of the rest: 1 µm.
-  if (turned > 0 && std::abs(std::remainder(now[free] - open.rest[free], kTurn_rad)) > 1e-5) {
+  if (turned > 0 && std::abs(std::remainder(now[free] - open.rest[free], kTurn_rad)) > 5e-6) {
     EXPECT_NEAR(open.farthest, kRetract_mm, 1e-3) << "C turns beside the part";
     for (int i = 0; i < model.joint_count; ++i) {
       if (i == free) continue;
@@ -50,8 +50,8 @@ inline void check_turn_on_branch(const MachineModel& model, OpenRewind& open,
     return;
   }
   open.farthest = std::max(open.farthest, off);
-  constexpr double kLastTurn_mm = 4e-3;  // of C by 1e-5 rad, 400 mm off its axis
-  EXPECT_LT((pose.tip - open.begin.tip - off * open.begin.axis).norm(), kLastTurn_mm);
+  // The last 5e-6 rad of C, 400 mm off its axis.
+  EXPECT_LT((pose.tip - open.begin.tip - off * open.begin.axis).norm(), 2e-3);
   EXPECT_LT(angle_between(pose.axis, open.begin.axis), 1e-4);
   EXPECT_GT(off, -1e-3);
 }
