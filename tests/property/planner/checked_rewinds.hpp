@@ -10,6 +10,7 @@
 #include "meridian/path/pose_at.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "property/planner/winding_programs.hpp"
+#include "support/program_end.hpp"
 
 /// Checks programs in which C comes to its end of travel.
 namespace meridian::test::rewinds {
@@ -24,6 +25,44 @@ inline std::vector<MachineModel> machines_with_two_solutions() {
 /// In degrees round a cone.
 constexpr double step_of(Transition transition) {
   return transition == Transition::kSmooth ? 4 : 20;
+}
+
+/// Where a cone's axis leans to: azimuth and tilt at its corners.
+struct Lean {
+  double azimuth_deg, tilt_rad;
+};
+
+/// From corner to corner in steps of `step_deg` at most.
+inline std::vector<ClBlock> lean_along(const std::vector<Lean>& corners, double step_deg) {
+  std::vector<ClBlock> blocks;
+  const auto add = [&blocks](double azimuth_deg, double tilt) {
+    const double at = units::rad_from_deg(azimuth_deg);
+    const double height = 0.01 * static_cast<double>(blocks.size());
+    blocks.push_back(leaning(tilt, at, {20 * std::cos(at), 20 * std::sin(at), -height}));
+  };
+  add(corners[0].azimuth_deg, corners[0].tilt_rad);
+  for (std::size_t n = 1; n < corners.size(); ++n) {
+    const Lean from = corners[n - 1], to = corners[n];
+    const double by = to.azimuth_deg - from.azimuth_deg;
+    const int steps = static_cast<int>(std::ceil(std::abs(by) / step_deg));
+    for (int k = 1; k <= steps; ++k) {
+      const double share = static_cast<double>(k) / steps;
+      add(from.azimuth_deg + by * share, from.tilt_rad + (to.tilt_rad - from.tilt_rad) * share);
+    }
+  }
+  number_and_end(blocks);
+  return blocks;
+}
+
+/// Turns the path round where C would begin it downwards from `start`.
+inline void turn_upwards(const MachineModel& model, const JointVector& start,
+                         std::vector<Lean>& corners) {
+  const int free = redundant_joint(model);
+  const double at = units::rad_from_deg(corners[0].azimuth_deg) + 0.1;
+  const Vector3 tip(20 * std::cos(at), 20 * std::sin(at), 0);
+  const JointVector next = solve_block(model, leaning(corners[0].tilt_rad, at, tip), 0, start);
+  if (next[free] > start[free]) return;
+  for (Lean& corner : corners) corner.azimuth_deg *= -1;
 }
 
 /// A rewind while its setpoints come: where the tool left, and how far it was off the part.

@@ -26,21 +26,10 @@ namespace {
 constexpr double kTilt_rad = 0.3;
 
 /// Round a cone: the azimuth goes from one of `corners_deg` to the next.
-std::vector<ClBlock> round_a_cone(const std::vector<double>& corners_deg, double step_deg) {
-  std::vector<ClBlock> blocks;
-  const auto add = [&blocks](double azimuth_deg) {
-    const double at = units::rad_from_deg(azimuth_deg);
-    const double height = 0.01 * static_cast<double>(blocks.size());
-    blocks.push_back(leaning(kTilt_rad, at, {20 * std::cos(at), 20 * std::sin(at), -height}));
-  };
-  add(corners_deg[0]);
-  for (std::size_t n = 1; n < corners_deg.size(); ++n) {
-    const double from = corners_deg[n - 1], by = corners_deg[n] - from;
-    const int steps = static_cast<int>(std::ceil(std::abs(by) / step_deg));
-    for (int k = 1; k <= steps; ++k) add(from + by * k / steps);
-  }
-  number_and_end(blocks);
-  return blocks;
+std::vector<Lean> round_a_cone(const std::vector<double>& corners_deg) {
+  std::vector<Lean> corners;
+  for (const double azimuth_deg : corners_deg) corners.push_back({azimuth_deg, kTilt_rad});
+  return corners;
 }
 
 /// Such a program, on a machine where C comes to its end of travel 25° from the begin.
@@ -51,14 +40,13 @@ struct Case {
 };
 
 /// Relative to where C begins, in the sense that it goes first: the corners.
-Case at_the_end_of_travel(MachineModel model, double range_deg, std::vector<double> corners_deg,
-                          double step_deg) {
+Case at_the_end_of_travel(MachineModel model, double range_deg,
+                          const std::vector<double>& corners_deg, double step_deg) {
   const int free = redundant_joint(model);
-  const ClBlock first = round_a_cone({0, 10}, 10)[0], next = round_a_cone({0, 10}, 10)[1];
-  JointVector start = solve_block(model, first, 0);
-  const double sense = solve_block(model, next, 0, start)[free] > start[free] ? 1 : -1;
-  for (double& corner : corners_deg) corner *= sense;
-  Case out{model, round_a_cone(corners_deg, step_deg), start};
+  std::vector<Lean> corners = round_a_cone(corners_deg);
+  const JointVector start = solve_block(model, lean_along({corners[0]}, step_deg)[0], 0);
+  turn_upwards(model, start, corners);
+  Case out{model, lean_along(corners, step_deg), start};
   JointLimits& limits = out.model.joints[free].limits;
   limits.travel_max = start[free] + units::rad_from_deg(25);
   limits.travel_min = limits.travel_max - units::rad_from_deg(range_deg);

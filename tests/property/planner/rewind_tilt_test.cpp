@@ -23,33 +23,6 @@
 namespace meridian::test::rewinds {
 namespace {
 
-/// Where a cone's axis leans to: azimuth and tilt at its corners.
-struct Lean {
-  double azimuth_deg, tilt_rad;
-};
-
-/// From corner to corner in steps of `step_deg` at most.
-std::vector<ClBlock> lean_along(const std::vector<Lean>& corners, double step_deg) {
-  std::vector<ClBlock> blocks;
-  const auto add = [&blocks](double azimuth_deg, double tilt) {
-    const double at = units::rad_from_deg(azimuth_deg);
-    const double height = 0.01 * static_cast<double>(blocks.size());
-    blocks.push_back(leaning(tilt, at, {20 * std::cos(at), 20 * std::sin(at), -height}));
-  };
-  add(corners[0].azimuth_deg, corners[0].tilt_rad);
-  for (std::size_t n = 1; n < corners.size(); ++n) {
-    const Lean from = corners[n - 1], to = corners[n];
-    const double by = to.azimuth_deg - from.azimuth_deg;
-    const int steps = static_cast<int>(std::ceil(std::abs(by) / step_deg));
-    for (int k = 1; k <= steps; ++k) {
-      const double share = static_cast<double>(k) / steps;
-      add(from.azimuth_deg + by * share, from.tilt_rad + (to.tilt_rad - from.tilt_rad) * share);
-    }
-  }
-  number_and_end(blocks);
-  return blocks;
-}
-
 struct TiltCase {
   MachineModel model;
   std::vector<ClBlock> blocks;
@@ -63,11 +36,8 @@ TiltCase short_of_tilt(MachineModel model, double room_deg, double range_deg,
                        std::vector<Lean> corners, double step_deg) {
   const int free = redundant_joint(model);
   TiltCase out{model, {}, {}, free == 3 ? 4 : 3};
-  const ClBlock first = leaning(corners[0].tilt_rad, 0, {20, 0, 0});
-  out.start = solve_block(model, first, 0);
-  const ClBlock next = leaning(corners[0].tilt_rad, 0.1, {20, 0, 0});
-  const double sense = solve_block(model, next, 0, out.start)[free] > out.start[free] ? 1 : -1;
-  for (Lean& corner : corners) corner.azimuth_deg *= sense;
+  out.start = solve_block(model, lean_along({corners[0]}, step_deg)[0], 0);
+  turn_upwards(model, out.start, corners);
   out.blocks = lean_along(corners, step_deg);
   JointLimits& c = out.model.joints[free].limits;
   c.travel_max = out.start[free] + units::rad_from_deg(room_deg);

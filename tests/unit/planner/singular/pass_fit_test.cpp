@@ -15,15 +15,6 @@ namespace {
 
 using wrist_path::WristPath;
 
-PassRange range_of(const WristPath& path) {
-  PassRange range;
-  range.nearest = 10;
-  range.to = WristPath::kLength_mm;
-  range.branch = path.branch;
-  range.joints = path.begin_joints;
-  return range;
-}
-
 RobotPass pass_of(const WristPath& path, double begin, double end) {
   RobotPass pass;
   pass.at = SingularSet::kWrist;
@@ -55,7 +46,7 @@ TEST(PassFit, MeetsTheExactWayWithTwoDerivativesAtBothEnds) {
   const WristPath path(0.01);
   ASSERT_GE(path.branch, 0);
   const PassTask task = path.task();
-  const PassRange range = range_of(path);
+  const PassRange range = path.range();
   PassFit fit(task, range);
   RobotPass pass = pass_of(path, 4, 17);
   ASSERT_TRUE(fit.fit(pass, 0));
@@ -75,7 +66,7 @@ TEST(PassFit, MeetsTheExactWayWithTwoDerivativesAtBothEnds) {
 TEST(PassFit, BeginsAtRestWhereTheJointStandsThere) {
   const WristPath path(0.01);
   const PassTask task = path.task();
-  PassRange range = range_of(path);
+  PassRange range = path.range();
   range.rests_at_from = SingularSet::kWrist;
   range.joints[robot::kRoll] = -0.3;
   PassFit fit(task, range);
@@ -90,7 +81,7 @@ TEST(PassFit, BeginsAtRestWhereTheJointStandsThere) {
 TEST(PassFit, ComesToRestWhereItMayTurnedAsAsked) {
   const WristPath path(0.01);
   const PassTask task = path.task();
-  PassRange range = range_of(path);
+  PassRange range = path.range();
   range.rests_at_to = SingularSet::kWrist;
   PassFit fit(task, range);
   double straight = 0;
@@ -112,7 +103,7 @@ TEST(PassFit, ComesToRestWhereItMayTurnedAsAsked) {
 TEST(PassFit, IsNoneBetweenPointsThatAreTheSame) {
   const WristPath path(0.01);
   const PassTask task = path.task();
-  const PassRange range = range_of(path);
+  const PassRange range = path.range();
   PassFit fit(task, range);
   RobotPass pass = pass_of(path, 9, 9 + 1.5 * kSamePoint_mm);
   EXPECT_FALSE(fit.fit(pass, 0));
@@ -123,7 +114,7 @@ TEST(PassFit, IsNoneBetweenPointsThatAreTheSame) {
 TEST(PassFit, IsNoneWhereTheRollOfTheExactWayTurnsTooSharplyToGuide) {
   const WristPath path(1e-7);
   const PassTask task = path.task();
-  const PassRange range = range_of(path);
+  const PassRange range = path.range();
   PassFit fit(task, range);
   RobotPass pass = pass_of(path, 4, 10.00002);
   EXPECT_FALSE(fit.fit(pass, 0));
@@ -132,7 +123,7 @@ TEST(PassFit, IsNoneWhereTheRollOfTheExactWayTurnsTooSharplyToGuide) {
 TEST(PassFit, LeadsOnWhereTheExactWayBehindItKeepsTravel) {
   WristPath path(0.01);
   const PassTask task = path.task();
-  const PassRange range = range_of(path);
+  const PassRange range = path.range();
   PassFit fit(task, range);
   RobotPass pass = pass_of(path, 4, 13);
   ASSERT_TRUE(fit.fit(pass, 0));
@@ -151,7 +142,7 @@ TEST(PassFit, LeadsOnWhereTheExactWayBehindItKeepsTravel) {
 TEST(PassFit, LeadsOnFromTheWindingThatThePassEndsOn) {
   WristPath path(0.01);
   const PassTask task = path.task();
-  const PassRange range = range_of(path);
+  const PassRange range = path.range();
   PassFit fit(task, range);
   RobotPass pass = pass_of(path, 4, 13);
   ASSERT_TRUE(fit.fit(pass, 0));
@@ -170,7 +161,7 @@ TEST(PassFit, PastBothSingularitiesYawAndRollMeetTheExactWay) {
   ASSERT_GE(path.branch, 0);
   const PassTask task = path.task();
   for (const double end : {17.0, WristPath::kLength_mm}) {
-    const PassRange range = range_of(path);
+    const PassRange range = path.range();
     PassFit fit(task, range);
     RobotPass pass = pass_of_both(path, 4, end);
     ASSERT_TRUE(fit.fit(pass, 0));
@@ -192,7 +183,7 @@ TEST(PassFit, PastBothSingularitiesYawAndRollMeetTheExactWay) {
 TEST(PassFit, PastBothTheRollBeginsWhereItStandsWhereThePathBegins) {
   const WristPath path = wrist_path::path_past_both(0.01, 0.6);
   const PassTask task = path.task();
-  PassRange range = range_of(path);
+  PassRange range = path.range();
   range.joints[robot::kRoll] += 1e-7;
   PassFit fit(task, range);
   RobotPass pass = pass_of_both(path, 0, 17);
@@ -213,7 +204,7 @@ TEST(PassFit, PastBothTheRollRestsWhereTheWayEndsWithTheToolInLineWithTheForearm
        {1e-4, 1e-3}) {  // of a tolerance of 2e-3 a fifth counts as in line
     const WristPath path = wrist_path::path_past_both(beside_rad, 0.6);
     const PassTask task = path.task();
-    PassRange range = range_of(path);
+    PassRange range = path.range();
     range.to = 10;
     PassFit fit(task, range);
     RobotPass pass = pass_of_both(path, 4, 10);
@@ -229,7 +220,7 @@ TEST(PassFit, PastBothTheRollRestsWhereTheWayEndsWithTheToolInLineWithTheForearm
 TEST(PassFit, BeginsNoPassBesideBothButWhereThePathBegins) {
   const WristPath path = wrist_path::path_past_both(1e-3, 0.001);
   const PassTask task = path.task();
-  PassRange range = range_of(path);
+  PassRange range = path.range();
   PassFit fit(task, range);
   RobotPass pass = pass_of_both(path, 10, 17);
   range.rests_at_from = SingularSet::kWristAndShoulder;

@@ -17,15 +17,6 @@ using wrist_path::WristPath;
 
 constexpr double kAxisTolerance_rad = 0.002;  // of WristPath::task()
 
-PassRange range_about(const WristPath& path) {
-  PassRange range;
-  range.nearest = 10;
-  range.to = WristPath::kLength_mm;
-  range.branch = path.branch;
-  range.joints = path.begin_joints;
-  return range;
-}
-
 /// How far the roll goes on the exact way from end to end of `pass`.
 double exact_turn(const WristPath& path, const RobotPass& pass) {
   JointVector q = path.begin_joints;
@@ -40,7 +31,7 @@ double exact_turn(const WristPath& path, const RobotPass& pass) {
 
 TEST(RobotPass, LeadsStraightThroughTheWristWithTheBendTurnedOver) {
   const WristPath path(1e-4);
-  const RobotPass pass = find_robot_pass(path.task(), range_about(path));
+  const RobotPass pass = find_robot_pass(path.task(), path.range());
   EXPECT_LT(pass.begin, 10);
   EXPECT_GT(pass.end, 10);
   EXPECT_EQ(pass.at, SingularSet::kWrist);
@@ -55,7 +46,7 @@ TEST(RobotPass, KeepsTheTipAndTheAxisInsideItsToleranceAndMeetsTheExactWay) {
     SCOPED_TRACE(beside_rad);
     const WristPath path(beside_rad);
     const PassTask task = path.task();
-    const RobotPass pass = find_robot_pass(task, range_about(path));
+    const RobotPass pass = find_robot_pass(task, path.range());
     ASSERT_GT(pass.end, pass.begin);
     JointVector q = path.begin_joints;
     double largest = 0;
@@ -77,7 +68,7 @@ TEST(RobotPass, KeepsTheTipAndTheAxisInsideItsToleranceAndMeetsTheExactWay) {
 
 TEST(RobotPass, PastTheWristFartherOffThanTheToleranceStaysOnItsSide) {
   const WristPath path(0.01);
-  const RobotPass pass = find_robot_pass(path.task(), range_about(path));
+  const RobotPass pass = find_robot_pass(path.task(), path.range());
   ASSERT_GT(pass.end, pass.begin);
   EXPECT_EQ(pass.branch_after, path.branch);
   EXPECT_NEAR(pass.joint.back() - pass.joint.front(), exact_turn(path, pass), 1e-5);
@@ -86,7 +77,7 @@ TEST(RobotPass, PastTheWristFartherOffThanTheToleranceStaysOnItsSide) {
 TEST(RobotPass, PastBothSingularitiesDrivesYawAndRollInsideBothTolerances) {
   const WristPath path = wrist_path::path_past_both(1e-4, 0.005);
   const PassTask task = path.task();
-  const RobotPass pass = find_robot_pass(task, range_about(path));
+  const RobotPass pass = find_robot_pass(task, path.range());
   EXPECT_EQ(pass.at, SingularSet::kWristAndShoulder);
   ASSERT_GT(pass.end, pass.begin);
   JointVector q = path.begin_joints;
@@ -101,7 +92,7 @@ TEST(RobotPass, PastBothSingularitiesDrivesYawAndRollInsideBothTolerances) {
 
 TEST(RobotPass, EndsAtRestWhereItMay) {
   const WristPath path(1e-4);
-  PassRange range = range_about(path);
+  PassRange range = path.range();
   range.to = 10;
   range.rests_at_to = SingularSet::kWrist;
   const RobotPass pass = find_robot_pass(path.task(), range);
@@ -112,7 +103,7 @@ TEST(RobotPass, EndsAtRestWhereItMay) {
 
 TEST(RobotPass, BeginsAtRestWithTheJointAsItStands) {
   const WristPath path(1e-4);
-  PassRange range = range_about(path);
+  PassRange range = path.range();
   range.from = 10;
   range.rests_at_from = SingularSet::kWrist;
   range.joints = path.middle;
@@ -126,7 +117,7 @@ TEST(RobotPass, BeginsAtRestWithTheJointAsItStands) {
 TEST(RobotPass, IsNoneWhereAnotherJointIsOutsideTravelThere) {
   WristPath path(1e-4);
   path.model.joints[robot::kElbow].limits.travel_max = path.middle[robot::kElbow] - 0.1;
-  const RobotPass pass = find_robot_pass(path.task(), range_about(path));
+  const RobotPass pass = find_robot_pass(path.task(), path.range());
   EXPECT_FALSE(pass.end > pass.begin);
 }
 

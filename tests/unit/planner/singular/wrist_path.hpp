@@ -59,6 +59,15 @@ struct WristPath : SpanLookup {
   [[nodiscard]] PassTask task() const {
     return {model, *this, axes, tips, model.tool_length_mm, 0.002, 0.01, false};
   }
+  /// The whole path, nearest to the singularity in its middle.
+  [[nodiscard]] PassRange range() const {
+    PassRange range;
+    range.nearest = 10;
+    range.to = kLength_mm;
+    range.branch = branch;
+    range.joints = begin_joints;
+    return range;
+  }
 
   [[nodiscard]] Solution<Jet<2>> exact(double u, const JointVector& near) const {
     return solve(model, model.tool_length_mm, pose_of<Jet<2>>(span, u), branch, near);
