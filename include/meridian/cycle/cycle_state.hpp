@@ -97,6 +97,7 @@ struct SentSetpoint {
 /// be evaluated any more.
 struct StopInProgress {
   StopMode mode = StopMode::kNone;
+  StopKind kind = StopKind::kHold;
   StopLaw law;             ///< path length; off the path: seconds at the speed of the begin
   double time = 0;         ///< since it or its law began
   double passed = 0;       ///< path length of the path pieces left behind since it began

@@ -6,6 +6,9 @@
 /// How a stop leads to rest, and the one function that changes it. RT: cycle.
 namespace meridian {
 
+/// Which of the joints' limits a stop may use.
+enum class StopKind : std::uint8_t { kHold, kFault };
+
 enum class StopMode : std::uint8_t {
   kNone,              ///< nothing stops
   kOnPath,            ///< on the path, by a law of its own

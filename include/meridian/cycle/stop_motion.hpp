@@ -131,10 +131,14 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
   }
   const bool was_by_rate = is_along_plan(stop.mode);
   const bool has_authority = authority.jerk > 0 || !(begin.ds > 0);
-  if (!has_authority && stop.mode == StopMode::kOnPath && share == 1.0) return;
+  if (!has_authority && stop.mode == StopMode::kOnPath && share == 1.0) {
+    stop.kind = kind;  // its law may be laid out anew by what this kind may use
+    return;
+  }
   const StopInProgress before = stop;
   stop = {};
   stop.rate_begin = rate;
+  stop.kind = kind;
   if (has_authority) return lay_out_stop(c.state, begin, authority);
   stop.change(kind == StopKind::kFault ? StopEvent::kFault : StopEvent::kHold);
   if (was_by_rate) {
@@ -282,6 +286,31 @@ inline void end_stop_here(CycleState& state) noexcept {
   return authority;
 }
 
+/// Lays the stop on the path out anew where the piece that it has come to, or the speed, has more
+/// authority than it began with.
+inline void shorten_stop(Cycle& c) noexcept {
+  StopInProgress& stop = c.state.stop;
+  if (stop.time < stop.deviation_time || !is_on_move(c)) return;
+  const PathState& here = c.state.on_path;
+  const double left = stop.law.duration() - stop.time;
+  if (!(here.ds > 0) || !(left > c.dt)) return;
+  const TimePiece& piece = *c.reader.piece();
+  const PathState plan = state_at(piece, c.state.piece_time);
+  const StopMargin authority = authority_on_law(piece, stop.kind, here, plan);
+  if (!(authority.jerk > 0)) return;
+  const StopLaw law(here, authority);
+  if (!(law.duration() < left - c.dt)) return;
+  const double rest = stop.law.at(stop.law.duration()).s - stop.passed;
+  if (law.distance() > rest - here.s) return;
+  stop.stopping_time += law.duration() - left;
+  stop.stopping_distance += law.distance() - (rest - here.s);
+  stop.rate_begin *= here.ds / stop.speed_begin;
+  stop.speed_begin = here.ds;
+  stop.law = law;
+  stop.time = stop.passed = stop.deviation_time = 0;
+  stop.begin = c.state.joints;
+}
+
 /// Leaves the plan for a law of its own where there is authority for one by now.
 inline void leave_plan(Cycle& c) noexcept {
   const StopMargin authority = authority_to_leave_plan(c);
@@ -327,6 +356,7 @@ inline void leave_plan(Cycle& c) noexcept {
   StopInProgress& stop = c.state.stop;
   if (is_along_plan(stop.mode)) leave_plan(c);
   if (is_along_plan(stop.mode)) return follow_stop_by_rate(c);
+  if (stop.mode == StopMode::kOnPath) shorten_stop(c);
   for (int n = 0; n < c.periods; ++n) stop.time += c.dt;  // as if none had been lost, bit for bit
   if (is_off_path(stop.mode)) {
     put_off_path(c.state, c.machine.joint_count);

@@ -53,13 +53,16 @@ struct TimePiece {
   /// They hold from states with no more ṡ than that, what it grows by while s̈ > 0 is let go
   /// included. Only where a smooth plan bends as sharply as its speed allows are they bounded.
   double stop_velocity = kAnyVelocity, fault_velocity = kAnyVelocity;
-  /// For a machine that is slower than planned (override, resume). Where `slow_velocity` is set,
-  /// slow_* hold as they stand up to it. Where `authority_velocity` is set, they hold next to rest,
-  /// the former up to that ṡ, and what lies between may be used: cycle/stop_margin.hpp.
+  /// For a machine that is slower than planned (override, resume), of a smooth plan: slow_* hold up
+  /// to `slow_velocity`.
   double slow_velocity = 0;
-  double authority_velocity = 0;
   double slow_stop_accel = 0, slow_stop_jerk = 0;
   double slow_fault_accel = 0, slow_fault_jerk = 0;
+  /// They hold next to rest. What lies between them and slow_*, or stop_* and fault_* that hold up
+  /// to `authority_velocity` where that is set, may be used: cycle/stop_margin.hpp.
+  double authority_velocity = 0;
+  double rest_stop_accel = 0, rest_stop_jerk = 0;
+  double rest_fault_accel = 0, rest_fault_jerk = 0;
 };
 static_assert(std::is_trivially_copyable_v<TimePiece>);
 

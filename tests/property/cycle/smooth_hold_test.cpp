@@ -163,8 +163,11 @@ void hold_at_any_instant(std::uint32_t seed, Holds& holds) {
     ASSERT_EQ(run.world.now(), State::kHeld);
     const Event stopped = run.world.last(EventCode::kStopped);
     run.command(Verb::kResume);
+    if (piece == trace.times.size()) {  // a hold kept a tail: behind it the plan is another one
+      ASSERT_TRUE(run.writer().tail_entered());
+      return;
+    }
     if (!is_smooth || begin.ds <= 1e-3) continue;
-    ASSERT_LT(piece, trace.times.size());
     const PathAhead ahead(machine, trace, piece, joints);
     const MinStop min = min_stop(machine, begin, PathAhead(ahead));
     const double granted_s = holds.stop.plus * dt;

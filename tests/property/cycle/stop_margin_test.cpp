@@ -55,8 +55,8 @@ TEST(StopMargin, KeepsEveryJointBetweenRestAndThePlannedSpeed) {
     const double product = largest_stop_product(v1, piece.stop_accel, jerk_at(rows, v1, 0));
     piece.stop_jerk = jerk_at(rows, v1, product);
     if (!(piece.stop_jerk > 0)) continue;
-    piece.slow_stop_accel = accel_at(rows, 0);
-    piece.slow_stop_jerk = jerk_at(rows, 0, 0);
+    piece.rest_stop_accel = accel_at(rows, 0);
+    piece.rest_stop_jerk = jerk_at(rows, 0, 0);
     const PathState state{0, v1 * unit(draw), piece.stop_accel * (2 * unit(draw) - 1), 0};
     const StopMargin got = authority_of(piece, StopKind::kHold, state);
     const double rise = std::max(state.dds, 0.0);
@@ -90,8 +90,8 @@ TEST(StopMargin, IsWhatThePlanSaysAtThePlannedSpeedOrWhereNothingIsKnown) {
   EXPECT_EQ(authority_of(piece, StopKind::kHold, slow).accel, 100);
   EXPECT_EQ(authority_of(piece, StopKind::kFault, slow).jerk, 4000);
   piece.authority_velocity = 1;
-  piece.slow_stop_accel = 500;
-  piece.slow_stop_jerk = 5000;
+  piece.rest_stop_accel = 500;
+  piece.rest_stop_jerk = 5000;
   EXPECT_EQ(authority_of(piece, StopKind::kHold, slow).jerk, 1000);
 }
 

@@ -79,12 +79,59 @@ TEST(StopMarginOfAState, HasNoSlowOneWithoutJerkOrSpeed) {
   expect_margin(authority_of(piece, StopKind::kHold, {0, 0.4, 0, 0}), 300, 3000);
 }
 
+TEST(StopMarginOfAState, LiesBetweenThoseAtRestAndTheSlowOneOfASmoothPlan) {
+  TimePiece piece = smooth_piece();
+  piece.rest_stop_accel = 900;
+  piece.rest_stop_jerk = 27000;
+  const auto at = [&](double v) { return authority_of(piece, StopKind::kHold, {0, v, 0, 0}); };
+  const auto expected = [](double v) {
+    const double x = v / 10, used = std::sqrt(27000 * v);
+    const double accel = std::min((1 - x) * 900 + x * 300, used);
+    const double product = largest_stop_product(v, accel, 27000);
+    const double y = std::max({product / largest_stop_product(10, 300, 3000), x, x * accel / 300});
+    return y <= 1 ? StopMargin{accel, (1 - y) * 27000 + y * 3000} : StopMargin{300, 3000};
+  };
+  bool is_between = false;
+  for (const double v : {0.01, 0.3, 1.0, 2.0, 4.0, 9.0}) {
+    expect_margin(at(v), expected(v).accel, expected(v).jerk);
+    is_between = is_between || (at(v).jerk > 3100 && at(v).jerk < 26000);
+  }
+  EXPECT_TRUE(is_between);
+  EXPECT_NEAR(at(1e-6).jerk, 27000, 1);
+  expect_margin(at(10), 300, 3000);
+  piece.rest_stop_jerk = 2999;
+  expect_margin(at(0.3), 300, 3000);
+}
+
+TEST(StopMarginOnALaw, IsThatOfThePieceWhereTheStopLiesAheadOfAllThatHaveIt) {
+  const TimePiece piece = smooth_piece();
+  const auto on_law = [&](double v, double a, double plan_v = 60, double plan_a = 0) {
+    return authority_on_law(piece, StopKind::kHold, {0, v, a, 0}, {0, plan_v, plan_a, 0});
+  };
+  expect_margin(on_law(40, -90), 100, 1000);
+  expect_margin(on_law(5, -90), 300, 3000);
+  expect_margin(on_law(47, -90), 0, 0);            // its law comes down from 51.05
+  expect_margin(on_law(40, -90, 43), 0, 0);        // and from more than the plan has here
+  expect_margin(on_law(40, -101), 0, 0);           // harder than the margin lets it be
+  expect_margin(on_law(40, 1), 0, 0);              // it does not brake yet
+  expect_margin(on_law(60, -1), 0, 0);             // no slower than the plan
+  expect_margin(on_law(40, -90, 80, -361), 0, 0);  // the plan brakes harder at that speed
+  expect_margin(on_law(40, -90, 80, -359), 100, 1000);
+  TimePiece leg = piece;
+  leg.slow_velocity = 0;
+  expect_margin(authority_on_law(leg, StopKind::kHold, {0, 5, -9, 0}, {0, 60, 0, 0}), 0, 0);
+  expect_margin(authority_on_law(piece, StopKind::kFault, {0, 40, -150, 0}, {0, 60, 0, 0}), 200,
+                4000);
+}
+
 /// A piece of a plan from rest to rest: 100 and 1000 at 50 mm/s, 300 and 3000 next to rest.
 TimePiece plan_from_rest() {
   TimePiece piece = smooth_piece();
   piece.stop_velocity = piece.fault_velocity = 1e9;
   piece.slow_velocity = 0;
   piece.authority_velocity = 50;
+  piece.rest_stop_accel = 300;
+  piece.rest_stop_jerk = 3000;
   return piece;
 }
 
@@ -105,10 +152,10 @@ TEST(StopMarginOfAState, LiesBetweenThoseAtRestAndAtThePlannedSpeed) {
 
 TEST(StopMarginOfAState, IsThatOfThePlannedSpeedWhereTheOtherIsNoHarder) {
   TimePiece piece = plan_from_rest();
-  piece.slow_stop_accel = 99;
+  piece.rest_stop_accel = 99;
   expect_margin(authority_of(piece, StopKind::kHold, {0, 1, 0, 0}), 100, 1000);
   piece = plan_from_rest();
-  piece.slow_stop_jerk = 999;
+  piece.rest_stop_jerk = 999;
   expect_margin(authority_of(piece, StopKind::kHold, {0, 1, 0, 0}), 100, 1000);
   piece = plan_from_rest();
   expect_margin(authority_of(piece, StopKind::kHold, {0, 50, 0, 0}), 100, 1000);

@@ -208,6 +208,72 @@ TEST(StopMotion, AFaultStopWithoutAuthorityGoesAlongThePlanToo) {
   EXPECT_EQ(one.world.state.stop.rate_begin, 1);
 }
 
+/// A hold that began with a tenth of what its piece grants once it is on its way.
+struct Holding : Cutting {
+  Holding() {
+    Cycle c = cycle();
+    begin_stop(c, StopKind::kHold);
+    stop() = {};
+    lay_out_stop(world.state, world.state.on_path, {300, 12'000});
+    stop().rate_begin = 1;
+    for (int n = 0; n < 30; ++n) EXPECT_TRUE(follow_one_cycle());
+  }
+  [[nodiscard]] StopInProgress& stop() { return world.state.stop; }
+  [[nodiscard]] bool follow_one_cycle() {
+    Cycle c = cycle();
+    return follow_stop(c);
+  }
+  /// Grants 3000 mm/s² and 120 000 mm/s³ from now on.
+  void grant() {
+    // A piece in force is written by the planner alone: of a test it may be written here.
+    auto& piece = const_cast<TimePiece&>(*world.reader.piece());
+    piece.slow_velocity = 1;
+    piece.stop_accel = 3000;
+    piece.stop_jerk = 120'000;
+  }
+};
+
+TEST(StopMotion, AStopThatComesToMoreMarginEndsSooner) {
+  Holding one, harder;
+  harder.grant();
+  const double time = harder.stop().stopping_time, distance = harder.stop().stopping_distance;
+  ASSERT_TRUE(harder.follow_one_cycle() && one.follow_one_cycle());
+  const double gained = time - harder.stop().stopping_time;
+  EXPECT_EQ(one.stop().stopping_time, time);
+  EXPECT_GT(gained, 0.1);
+  const double begun_at = 0.03, begun_s = one.stop().law.at(begun_at).s - one.stop().law.at(0).s;
+  EXPECT_NEAR(harder.stop().stopping_time, begun_at + harder.stop().law.duration(), 1e-9);
+  EXPECT_NEAR(harder.stop().stopping_distance, begun_s + harder.stop().law.distance(), 1e-9);
+  EXPECT_LT(harder.stop().stopping_distance, distance);
+  EXPECT_NEAR(harder.stop().rate_begin, harder.stop().speed_begin / 100, 1e-9)
+      << "the rate of plan time goes on from where it was";
+  while (!is_stop_over(harder.stop())) ASSERT_TRUE(harder.follow_one_cycle());
+  EXPECT_EQ(harder.world.state.on_path.ds, 0);
+}
+
+TEST(StopMotion, AStopBesideThePathKeepsItsLawUntilItIsBackOnIt) {
+  Holding beside;
+  beside.grant();
+  const double time = beside.stop().stopping_time;
+  beside.stop().deviation_time = beside.stop().time + 0.0025;
+  for (int n = 0; n < 3; ++n) {
+    ASSERT_TRUE(beside.follow_one_cycle());
+    EXPECT_EQ(beside.stop().stopping_time, time);
+  }
+  ASSERT_TRUE(beside.follow_one_cycle());
+  EXPECT_LT(beside.stop().stopping_time, time);
+  EXPECT_EQ(beside.stop().deviation_time, 0);
+}
+
+TEST(StopMotion, AFaultStopThatHasNoMarginOfItsOwnLooksForThatOfItsKind) {
+  Holding one;
+  const_cast<TimePiece&>(*one.world.reader.piece()).fault_jerk = 0;
+  Cycle c = one.cycle();
+  begin_stop(c, StopKind::kFault);
+  EXPECT_EQ(one.stop().mode, StopMode::kOnPath);
+  EXPECT_EQ(one.stop().kind, StopKind::kFault);
+}
+
 TEST(StopMotion, AStopThatBeginsBesideThePathComesBackToIt) {
   Cutting one, beside;
   for (Cutting* it : {&one, &beside}) {

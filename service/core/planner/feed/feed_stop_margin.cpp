@@ -66,11 +66,11 @@ bool FeedStopMargin::grant(const StopStretch& stretch, std::span<TimePiece> time
   if (!is_alone && !(hold.authority.jerk > 0)) return false;
   const Grant fault = find(fault_, stretch, is_alone && !is_tail);
   if (!is_alone && !(fault.authority.jerk > 0)) return false;
-  StopMargin slow_hold, slow_fault;
+  SlowGrant slow_hold, slow_fault;
   if (!is_tail) {
     const StopStretch slow = stretch.at_rate(kSlow);
-    slow_hold = find(hold_.caps, slow);
-    slow_fault = find(fault_.caps, slow);
+    slow_hold = find_slow(hold_.caps, slow);
+    slow_fault = find_slow(fault_.caps, slow);
   }
   const double slow_velocity = kSlow * stretch.min_velocity();
   for (TimePiece& time : times) {
@@ -81,10 +81,14 @@ bool FeedStopMargin::grant(const StopStretch& stretch, std::span<TimePiece> time
     time.fault_jerk = fault.authority.jerk;
     time.fault_velocity = fault.velocity;
     time.slow_velocity = slow_velocity;
-    time.slow_stop_accel = slow_hold.accel;
-    time.slow_stop_jerk = slow_hold.jerk;
-    time.slow_fault_accel = slow_fault.accel;
-    time.slow_fault_jerk = slow_fault.jerk;
+    time.slow_stop_accel = slow_hold.slow.accel;
+    time.slow_stop_jerk = slow_hold.slow.jerk;
+    time.slow_fault_accel = slow_fault.slow.accel;
+    time.slow_fault_jerk = slow_fault.slow.jerk;
+    time.rest_stop_accel = slow_hold.rest.accel;
+    time.rest_stop_jerk = slow_hold.rest.jerk;
+    time.rest_fault_accel = slow_fault.rest.accel;
+    time.rest_fault_jerk = slow_fault.rest.jerk;
   }
   return true;
 }
@@ -99,9 +103,24 @@ StopMargin FeedStopMargin::max_in(const Caps& caps, const StopStretch& stretch) 
   return {1 / accel, 1 / jerk};
 }
 
-StopMargin FeedStopMargin::find(const Caps& caps, const StopStretch& stretch) const noexcept {
+StopMargin FeedStopMargin::allowed_at_rest(const Caps& caps, std::int64_t first,
+                                           std::int64_t last) const noexcept {
+  double accel = kTiny, jerk = kTiny;
+  for (std::int64_t k = first; k <= last; ++k) {
+    const FeedCell& here = (*grid_)[k];
+    accel = std::max(accel, (here.bound.rate * caps.acceleration).maxCoeff());
+    jerk = std::max(jerk, (here.bound.rate * caps.jerk).maxCoeff() / here.made_tight);
+  }
+  return {1 / accel, 1 / jerk};
+}
+
+FeedStopMargin::SlowGrant FeedStopMargin::find_slow(const Caps& caps,
+                                                    const StopStretch& stretch) const noexcept {
   const StopMargin largest = max_in(caps, stretch);
-  return lessen(caps, stretch, largest, largest);
+  const Reach slow = lessen(caps, stretch, largest, largest);
+  if (!(slow.authority.jerk > 0)) return {};
+  const std::int64_t first = stretch.parts().front().cell;
+  return {slow.authority, allowed_at_rest(caps, first, slow.farthest)};
 }
 
 FeedStopMargin::Grant FeedStopMargin::find(Search& search, const StopStretch& stretch,
@@ -111,22 +130,23 @@ FeedStopMargin::Grant FeedStopMargin::find(Search& search, const StopStretch& st
   if (search.last.jerk > 0) {
     const StopMargin start{std::min(largest.accel, kMaxGrowth * search.last.accel),
                            std::min(largest.jerk, kMaxGrowth * search.last.jerk)};
-    got = lessen(search.caps, stretch, start, largest);
+    got = lessen(search.caps, stretch, start, largest).authority;
   }
-  if (!(got.jerk > 0)) got = lessen(search.caps, stretch, largest, largest);
+  if (!(got.jerk > 0)) got = lessen(search.caps, stretch, largest, largest).authority;
   search.last = got;
   if (got.jerk > 0) return {got, kAnyVelocity};
   if (!is_slower_good) return {};
   for (const double rate : kRates) {
     const StopStretch slower = stretch.at_rate(rate);
-    got = lessen(search.caps, slower, largest, largest);
+    got = lessen(search.caps, slower, largest, largest).authority;
     if (got.jerk > 0) return {got, slower.min_velocity()};
   }
   return {};
 }
 
-StopMargin FeedStopMargin::lessen(const Caps& caps, const StopStretch& stretch, StopMargin now,
-                                  const StopMargin& largest) const noexcept {
+FeedStopMargin::Reach FeedStopMargin::lessen(const Caps& caps, const StopStretch& stretch,
+                                             StopMargin now,
+                                             const StopMargin& largest) const noexcept {
   const double deceleration = stretch.max_deceleration();
   for (int round = 0; round < kMarginRounds; ++round) {
     double depth = depth_of(stretch.end(), now.jerk);
@@ -138,7 +158,8 @@ StopMargin FeedStopMargin::lessen(const Caps& caps, const StopStretch& stretch, 
     if (use.is_too_far || use.is_too_fast) break;
     if (use.is_within()) {
       const bool is_close = use.farthest + 2 >= rest_cell_;
-      return !is_close || ends_before_plan(stretch, now) ? now : StopMargin{};
+      if (is_close && !ends_before_plan(stretch, now)) break;
+      return {now, use.farthest};
     }
     if (use.acceleration > 1) now.accel *= kLess / std::min(use.acceleration, 2.0);
     if (use.jerk > 1) {

@@ -83,17 +83,29 @@ class FeedStopMargin {
     StopMargin authority;
     double velocity = 0;
   };
+  /// What stops may use, and the last cell that any of them comes to.
+  struct Reach {
+    StopMargin authority;
+    std::int64_t farthest = 0;
+  };
+  /// What stops of slow machines may use, and of those next to rest.
+  struct SlowGrant {
+    StopMargin slow, rest;
+  };
 
   /// Into `times`. False: there is no authority for all of a stretch of several pieces.
   [[nodiscard]] bool grant(const StopStretch& stretch, std::span<TimePiece> times) noexcept;
   [[nodiscard]] Grant find(Search& search, const StopStretch& stretch,
                            bool is_slower_good) const noexcept;
-  [[nodiscard]] StopMargin find(const Caps& caps, const StopStretch& stretch) const noexcept;
+  [[nodiscard]] SlowGrant find_slow(const Caps& caps, const StopStretch& stretch) const noexcept;
   /// What the cells of the stretch allow next to rest.
   [[nodiscard]] StopMargin max_in(const Caps& caps, const StopStretch& stretch) const noexcept;
+  /// What all cells from `first` to `last` allow next to rest.
+  [[nodiscard]] StopMargin allowed_at_rest(const Caps& caps, std::int64_t first,
+                                           std::int64_t last) const noexcept;
   /// `now` or less of it, that all stops from `stretch` may use; 0: there is none.
-  [[nodiscard]] StopMargin lessen(const Caps& caps, const StopStretch& stretch, StopMargin now,
-                                  const StopMargin& largest) const noexcept;
+  [[nodiscard]] Reach lessen(const Caps& caps, const StopStretch& stretch, StopMargin now,
+                             const StopMargin& largest) const noexcept;
   /// Whether a stop from `begin`, `in_cell` behind the begin of `cell`, passes the speed that this
   /// allows before its s̈ is down to zero.
   [[nodiscard]] static bool rises_too_far(const FeedCell& cell, const PathState& begin,

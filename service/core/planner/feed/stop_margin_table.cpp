@@ -112,10 +112,10 @@ void StopMarginTable::grant(TimePiece& time) const noexcept {
   time.fault_accel = std::max(fault.acceleration, time.stop_accel);
   time.fault_jerk = std::max(fault.jerk, time.stop_jerk);
   time.authority_velocity = range.velocity;
-  time.slow_stop_accel = find_acceleration(cells, caps_, 0);
-  time.slow_stop_jerk = find_jerk(cells, caps_, 0, 0);
-  time.slow_fault_accel = find_acceleration(cells, fault_caps_, 0);
-  time.slow_fault_jerk = find_jerk(cells, fault_caps_, 0, 0);
+  time.rest_stop_accel = find_acceleration(cells, caps_, 0);
+  time.rest_stop_jerk = find_jerk(cells, caps_, 0, 0);
+  time.rest_fault_accel = find_acceleration(cells, fault_caps_, 0);
+  time.rest_fault_jerk = find_jerk(cells, fault_caps_, 0, 0);
 }
 
 }  // namespace meridian

@@ -107,6 +107,29 @@ TEST(FeedStopMargin, HasNothingForSlowMachinesInATail) {
   EXPECT_EQ(time.slow_fault_accel, 0);
 }
 
+TEST(FeedStopMargin, SaysWhatTheCellsThatASlowStopReachesAllowNextToRest) {
+  Path path;
+  for (int k = 0; k < kCells; ++k) path.set(k, 0.8, 0.15, 0.02);
+  const TimePiece bent = path.grant(10, 60);
+  ASSERT_GT(bent.slow_stop_jerk, 0);
+  EXPECT_LT(bent.slow_stop_jerk, 0.99 * kJerk / 0.8);
+  EXPECT_NEAR(bent.rest_stop_jerk, kJerk / 0.8, 1e-6);
+  EXPECT_NEAR(bent.rest_stop_accel, kAccel / 0.8, 1e-6);
+  EXPECT_NEAR(bent.rest_fault_jerk, kFaultJerk / 0.8, 1e-6);
+  EXPECT_NEAR(bent.rest_fault_accel, kFaultAccel / 0.8, 1e-6);
+  path.set(11, 1.6, 0.15, 0.02);
+  const TimePiece near = path.grant(10, 60);
+  EXPECT_NEAR(near.rest_stop_jerk, kJerk / 1.6, 1e-6) << "a stop comes into the next cell";
+  EXPECT_NEAR(near.rest_stop_accel, kAccel / 1.6, 1e-6);
+  path.set(11, 0.8, 0.15, 0.02);
+  path.set(20, 1.6, 0.15, 0.02);
+  EXPECT_NEAR(path.grant(10, 60).rest_stop_jerk, kJerk / 0.8, 1e-6) << "5 mm are too far for one";
+  path.cells.grid[11].made_tight = 0.5;
+  path.margin.begin(path.cells.grid, kCells - 1);
+  EXPECT_NEAR(path.grant(10, 60).rest_stop_jerk, 0.5 * kJerk / 0.8, 1e-6);
+  EXPECT_EQ(path.grant(10, 60, 0, true).rest_stop_jerk, 0) << "a tail has none";
+}
+
 TEST(FeedStopMargin, KeepsTheFeedWhileAccelerationIsLetGo) {
   Path path;
   for (int k = 20; k < kCells; ++k) {

@@ -102,10 +102,10 @@ TEST(StopMarginTable, LetsAStopUseAllThatTheJointHasWhereThePathIsEven) {
   EXPECT_NEAR(cruise.stop_accel, std::min(500.0, 1.01 * std::sqrt(10000 * cruise.v)), 1);
   EXPECT_NEAR(cruise.fault_jerk, 30000, 1e-6);
   EXPECT_NEAR(cruise.fault_accel, std::min(1000.0, 1.01 * std::sqrt(30000 * cruise.v)), 1);
-  EXPECT_EQ(cruise.slow_stop_accel, 500);
-  EXPECT_EQ(cruise.slow_stop_jerk, 10000);
-  EXPECT_EQ(cruise.slow_fault_accel, 1000);
-  EXPECT_EQ(cruise.slow_fault_jerk, 30000);
+  EXPECT_EQ(cruise.rest_stop_accel, 500);
+  EXPECT_EQ(cruise.rest_stop_jerk, 10000);
+  EXPECT_EQ(cruise.rest_fault_accel, 1000);
+  EXPECT_EQ(cruise.rest_fault_jerk, 30000);
   EXPECT_NEAR(cruise.authority_velocity, cruise.v, 1e-9);
 }
 
@@ -165,7 +165,7 @@ TEST(StopMarginTable, CutsNoMoreThanItHasTo) {
 double average_of_stops(const Granted& got) {
   double sum = 0, duration = 0;
   for (const TimePiece& time : got.times) {
-    sum += time.duration * time.slow_stop_accel;
+    sum += time.duration * time.rest_stop_accel;
     duration += time.duration;
   }
   return sum / duration;
