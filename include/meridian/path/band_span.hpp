@@ -14,7 +14,7 @@ namespace meridian {
 /// changes. The first begins and the last ends on a CL block, where the machine is at rest.
 ///
 /// u is the chord length of the CL polyline, du² = |dP|² + (50 mm/rad · |dK|)²: along the spline it
-/// is nearly, not exactly, the path length, so |dP/du| is about 1 on a straight way, smaller where
+/// is nearly, not exactly, the path length, so |dP/du| is about 1 on a straight line, smaller where
 /// the axis turns and down to 0 at an exact reversal. It counts from 0 at BandSpline::begin().
 ///
 /// Frame: W. Units: mm, rad, s. Trivially copyable. Source: docs/motion.md, section 1.

@@ -21,8 +21,8 @@ enum class RejectCode : std::uint8_t {
   kUnreachable,    ///< no joints put the tool there
   kTravel,         ///< `joint` leaves travel at the block; `value`: joint position
   kTravelBetween,  ///< `joint` leaves travel between the block before and this one
-  kBranch,         ///< no way from the block before on any branch and winding
-  kApproach,       ///< no way from where the machine stands to the block
+  kBranch,         ///< no route from the block before on any branch and winding
+  kApproach,       ///< no route from where the machine stands to the block
   kAxisReversal,   ///< the axis turns by half a turn: no great circle is meant
   kTooComplex,     ///< the block needs more pieces than a plan holds
   kDiscontinuous,  ///< at a singularity: its joints would jump, or creep; `value`: the jump

@@ -34,7 +34,7 @@ namespace meridian {
 [[nodiscard]] PathPiece make_joint_move(const JointVector& begin, const JointVector& end,
                                         std::uint32_t rotary_mask) noexcept;
 
-/// `piece` (kLine or kArc) with another way of the axis, and the path length that goes with it.
+/// `piece` (kLine or kArc) with another route of the axis, and the path length that goes with it.
 [[nodiscard]] PathPiece with_axes(const PathPiece& piece, const Vector3& begin,
                                   const Vector3& end) noexcept;
 

@@ -11,7 +11,7 @@
 /// from the code that gives the pose. Frame: W. Units: mm, rad. Source: docs/motion.md.
 namespace meridian {
 
-/// Which share of the way between the ends of `piece` tip and axis have put behind at `s`.
+/// Which share of the route between the ends of `piece` tip and axis have put behind at `s`.
 /// RT: cycle.
 template <class S>
 [[nodiscard]] inline S fraction_at(const PathPiece& piece, const S& s) noexcept {

@@ -22,7 +22,7 @@ struct Approach {
   bool has_rest = false;       ///< behind the retraction the program's first actions are done
   double lift = 0;             ///< mm behind these, where they brought a tool that is longer
   double descent = 0;          ///< the same on the other side
-  double length = 0;           ///< path length of the whole way, 1 rad counted as 50 mm
+  double length = 0;           ///< path length of the whole path, 1 rad counted as 50 mm
   double time = 0;             ///< s, at overrides of 100 %
   std::uint8_t branch = 0;     ///< solution of the inverse kinematics that `to` lies on
 };

@@ -11,7 +11,7 @@ namespace meridian {
 enum class RelaxedReason : std::uint8_t {
   kThrough,  ///< straight through the pole, out on the other branch: the redundant joint hardly
              ///< turns
-  kBeside,   ///< past it on the same branch, the redundant joint on a shorter way
+  kBeside,   ///< past it on the same branch, the redundant joint on a shorter course
   kOnPole,   ///< nearer than kPoleDeviation_rad: counts as on the pole, where no azimuth is defined
   kThroughWrist,  ///< of a 6R robot: out with the bend turned over, the roll hardly turns
   kPastWrist,     ///< with the bend as it was

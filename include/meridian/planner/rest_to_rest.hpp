@@ -44,7 +44,7 @@ inline constexpr double kPoleDeviation_rad = 8e-6;
 /// the machine's file says how, the machine goes there ahead of the block, off the part
 /// (PlanResult::rewind).
 ///
-/// One window per block, without a tail: it ends at rest. The joints of the whole way between two
+/// One window per block, without a tail: it ends at rest. The joints of the whole path between two
 /// blocks are checked before anything of it is published. What a block becomes depends on the
 /// blocks before it and on begin() alone. plan() allocates nothing, throws nothing and needs no
 /// clock. Method and formulas: docs/motion.md. Context: planner thread. Proof: tests/unit/planner,
@@ -73,7 +73,7 @@ class RestToRestPlanner {
              const std::optional<JointVector>& first_joints = std::nullopt) noexcept;
 
   /// Blocks that are going to be planned, the first motion block of the program first: the approach
-  /// and the ways off the pole among them take the branch and winding that carry farthest. They
+  /// and the routes off the pole among them take the branch and winding that carry farthest. They
   /// must stay until this is called again, or begin(). A program that leaves travel among them
   /// whatever is chosen, and where no rewind helps, is refused with its first motion block, in
   /// the name of the block that leaves. The slack says how far from the programmed path the blocks

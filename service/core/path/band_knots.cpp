@@ -10,7 +10,7 @@ namespace {
 constexpr double kLargestGap_mm = 2.0;
 constexpr double kGrowth = 0.3;     // of the gap per mm of u
 constexpr double kMeanShare = 0.8;  // of the tolerances, for the mean spline
-constexpr double kSpread = 0.65;    // deviation of the mean spline <= 0.65 gaps of a way
+constexpr double kSpread = 0.65;    // deviation of the mean spline <= 0.65 gaps of a route
 constexpr double kCorner = 0.33;    // and <= 0.33 gaps of the jumps of direction
 constexpr double kSupport = 2.5;    // a jump is felt so many gaps away
 constexpr double kShrink = 0.8;     // gaps are tried in this ratio

@@ -22,7 +22,7 @@ using Vector6 = std::array<double, 6>;
 inline constexpr std::int64_t kVertexCapacity = 65536;
 inline constexpr std::int64_t kVertexReach = 2048;
 
-/// Blocks whose end is nearer than this to the vertex before count as no way at all.
+/// Blocks whose end is nearer than this to the vertex before count as no route at all.
 inline constexpr double kMinStep_mm = 1e-6;
 
 /// Within this of u before and after a point in inverse time blocks say how fast tip and axis may

@@ -10,7 +10,7 @@ namespace {
 constexpr double kGapGoal = 1e-4;     // of the time
 constexpr double kPrimalGoal = 1e-7;  // rows are scaled to about 1
 constexpr double kPrimalGood = 1e-5;  // what is accepted when the rounds are over
-constexpr double kToTheWall = 0.995;  // share of the way to the next bound that is gone
+constexpr double kToTheWall = 0.995;  // share of the step to the next bound that is gone
 constexpr int kStallRounds = 6;       // the primal residual has to halve in them
 
 }  // namespace

@@ -14,7 +14,7 @@
 
 namespace meridian {
 
-/// The blocks of a program about the one that is planned next, and what they tell of ways behind
+/// The blocks of a program about the one that is planned next, and what they tell of routes behind
 /// the pole.
 ///
 ///      planned, the last kKept        wait, at most kWaiting
@@ -71,14 +71,14 @@ class BlockWindow : public PoleLookAhead {
  private:
   static constexpr std::int64_t kKept = 2047;
   static constexpr std::size_t kReported = 64;
-  /// One of those that wait may be the block at whose end the ways start.
+  /// One of those that wait may be the block at whose end the routes start.
   static constexpr int kMaxFollowed = kWaiting - 1;
 
   /// Where block `sequence` is, or else the oldest one kept behind it.
   [[nodiscard]] std::int64_t find_first(std::uint64_t sequence) const noexcept;
   /// FeedMark::looked_at of a look at `sequence`, if one was told; else 0.
   [[nodiscard]] std::uint64_t reported_for(std::uint64_t sequence) const noexcept;
-  /// `block` from where the ways start.
+  /// `block` from where the routes start.
   [[nodiscard]] ClBlock rest_of(ClBlock block) const noexcept;
 
   bool is_used_;

@@ -52,7 +52,7 @@ class SmoothRun : public RewindTrial {
     kFailed        ///< fault() says why; what lies ahead of it is published to its end
   };
 
-  /// `raise` says what the feed is planned with, `look_ahead` how far ways behind the pole carry.
+  /// `raise` says what the feed is planned with, `look_ahead` how far routes behind the pole carry.
   SmoothRun(const MachineModel& model, FeedRaise& raise, PoleLookAhead* look_ahead = nullptr);
 
   /// `pole_tolerance_rad`: of the axis beside the pole, smoothing and axis deviation together.

@@ -36,7 +36,7 @@ ToolPose lifted(const ToolPose& pose, double by_mm) noexcept {
   return {pose.tip + by_mm * pose.axis, pose.axis};
 }
 
-/// The share of the straight way from `from` to `to` on which the tip stays in its box.
+/// The share of the straight line from `from` to `to` on which the tip stays in its box.
 double share_in_tip_box(const TipBox& box, const Array3& from, const Array3& to) noexcept {
   double share = 1;
   for (std::size_t i = 0; box.is_set && i < from.size(); ++i) {
@@ -61,7 +61,7 @@ double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
   if (!(whole_mm > 0)) return 0;
   double share = 1;
   if (redundant_joint(model_) < 0) {
-    // The joints of an arm bend on the way up: as far as the whole way stays in reach and travel.
+    // The joints of an arm bend on the way up: as far as the whole path stays in reach and travel.
     constexpr int kSteps = 16;
     JointVector before = joints;
     for (int n = 1; n <= kSteps; ++n) {

@@ -18,7 +18,7 @@ struct FreeEnd {
   std::size_t count = 0;
 };
 
-/// The smooth way of the redundant joint through its corridor: a cubic spline by u.
+/// The smooth course of the redundant joint through its corridor: a cubic spline by u.
 ///
 ///     ─┬──────────┬───┬─┬┬┬─┬───┬──────────┬─     knots: as close as the corridor is bent
 ///      every control value inside all windows that its curve has a part in, the string through

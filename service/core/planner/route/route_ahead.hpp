@@ -7,7 +7,7 @@
 
 namespace meridian {
 
-/// What became of a way as far as it was looked at.
+/// What became of a route as far as it was looked at.
 enum class RouteEnd : std::uint8_t {
   kNone,     ///< all is inside travel
   kDoubt,    ///< something is outside, by no more than rounding inside the slack may make of it or
@@ -16,7 +16,7 @@ enum class RouteEnd : std::uint8_t {
   kLost      ///< something leaves its travel for certain: the program cannot be cut this way
 };
 
-/// A branch and winding at the pose where a way starts, and how far it leads.
+/// A branch and winding at the pose where a route starts, and how far it leads.
 struct RouteAhead {
   int branch = 0;
   double free = 0;  ///< the redundant joint at the start, rad

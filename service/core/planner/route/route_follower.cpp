@@ -28,7 +28,7 @@ constexpr double kMinPole_rad = 1e-3;
 constexpr int kMaxSteps = 256;  // per block
 constexpr double kBend = 1.5;   // of the joints over the slack: it ends well outside of the pole
 
-/// Whether a way that came to `end` may still turn out otherwise.
+/// Whether a route that came to `end` may still turn out otherwise.
 bool is_open(RouteEnd end) noexcept { return end == RouteEnd::kNone || end == RouteEnd::kDoubt; }
 
 }  // namespace

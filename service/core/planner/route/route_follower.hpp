@@ -11,12 +11,12 @@
 namespace meridian {
 
 /// One branch, followed over programmed blocks from a start with the redundant joint anywhere:
-/// checks those of some ways that are on the branch. Tip and axis run on the programmed lines, arcs
-/// and great circles. Behind a tool block, whose length is not known here, rotary joints alone are
-/// checked. It ends where the axis comes so close to the pole that the branch may be chosen anew.
-/// From a start that is so close it is followed out first; from a start on the pole it sees
+/// checks those of some routes that are on the branch. Tip and axis run on the programmed lines,
+/// arcs and great circles. Behind a tool block, whose length is not known here, rotary joints alone
+/// are checked. It ends where the axis comes so close to the pole that the branch may be chosen
+/// anew. From a start that is so close it is followed out first; from a start on the pole it sees
 /// nothing. Where a run within the slack may leave the branch beside the pole that it begins at, no
-/// way is lost.
+/// route is lost.
 ///
 /// Units: mm, rad, s. No memory.
 // Flags: each is known by itself on the path, in any order.
@@ -26,7 +26,7 @@ class RouteFollower {
   RouteFollower(const MachineModel& model, double tool_length_mm, const LookAheadSlack& slack,
                 int branch, const ToolPose& start, std::span<RouteAhead> routes) noexcept;
 
-  /// The branch can be followed no farther, or none of its ways is open.
+  /// The branch can be followed no farther, or none of its routes is open.
   [[nodiscard]] bool is_over() const noexcept { return is_over_; }
 
   void follow(const ClBlock& block) noexcept;
@@ -40,7 +40,7 @@ class RouteFollower {
   /// Whether a rewind may help where `joint` runs out of travel, at `pose`.
   [[nodiscard]] bool may_rewind(int joint, const ToolPose& pose) const noexcept;
   /// Whether joints stand in a keep-out box or have the tip outside of its box. How far a run
-  /// within the slack passes it is not looked at: such a way comes behind the others.
+  /// within the slack passes it is not looked at: such a route comes behind the others.
   [[nodiscard]] bool is_at_box(const JointVector& all) const noexcept;
   /// Of the joints and drives whose place is known; -1: none.
   [[nodiscard]] int first_outside(const JointVector& all) const noexcept;

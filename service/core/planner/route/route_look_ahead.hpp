@@ -10,7 +10,7 @@
 
 namespace meridian {
 
-/// How many blocks each of some ways on carries, told block by block, for who waits for them: as
+/// How many blocks each of some routes on carries, told block by block, for who waits for them: as
 /// long as no joint and no drive of a stage is outside its travel (RouteFollower follows each
 /// branch). The machine has a redundant joint. Bounded by the blocks, no memory. Units: mm, rad, s.
 class RouteLookAhead {
@@ -19,14 +19,14 @@ class RouteLookAhead {
 
   explicit RouteLookAhead(const MachineModel& model) noexcept : model_(model) {}
 
-  /// `start`: the pose where all ways start; of the machine's ways the first kMaxCandidates are
+  /// `start`: the pose where all routes start; of the machine's routes the first kMaxCandidates are
   /// looked at.
   void begin(double tool_length_mm, const ToolPose& start, const LookAheadSlack& slack,
              std::span<const RouteAhead> routes) noexcept;
   /// The next block behind `start`; one that starts there, where it is an arc.
   void follow(const ClBlock& block) noexcept;
 
-  /// No block to come can change which ways carry farthest: one alone goes on, or none.
+  /// No block to come can change which routes carry farthest: one alone goes on, or none.
   [[nodiscard]] bool is_settled() const noexcept;
   [[nodiscard]] int followed() const noexcept { return followed_; }
   [[nodiscard]] std::span<const RouteAhead> routes() const noexcept {

@@ -18,7 +18,7 @@
 namespace meridian {
 namespace {
 
-constexpr double kNoTip_mm = 1e-9;     // shorter ways are no motion
+constexpr double kNoTip_mm = 1e-9;     // shorter routes are no motion
 constexpr double kNoTurn_rad = 1e-12;  // smaller turns of the axis are none
 constexpr int kMaxTurns = 4;           // windings tried either way
 /// In inverse time blocks within this way bound the axis, and count for a tolerance of it on it.

@@ -43,11 +43,11 @@ class Router {
   /// Cuts are planned for `factor` times their feed.
   void set_feed_factor(double factor) noexcept { feed_factor_ = factor; }
 
-  /// Plans the way from `cursor` to the end of `block`, whose axis is unit, and moves the cursor.
+  /// Plans the path from `cursor` to the end of `block`, whose axis is unit, and moves the cursor.
   [[nodiscard]] PathFault route(const ClBlock& block, PlanCursor& cursor, Staging& out) noexcept;
 
   /// Blocks that are known, among them those that are planned: where branch and winding can be
-  /// chosen, the ways that carry farthest through them come first, of these the cheapest. Empty:
+  /// chosen, the routes that carry farthest through them come first, of these the cheapest. Empty:
   /// the nearest. They stay as they are until this is called again.
   void look_at(std::span<const ClBlock> ahead, const LookAheadSlack& slack) noexcept {
     ahead_ = ahead;
@@ -80,14 +80,14 @@ class Router {
   [[nodiscard]] PathFault approach_joints(const ClBlock& block, const JointVector& to,
                                           PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] const std::optional<BlockReject>& lost_block() const noexcept { return lost_; }
-  /// The way that the last approach() found.
+  /// The route that the last approach() found.
   [[nodiscard]] const Approach& last_approach() const noexcept { return last_approach_; }
 
   /// What leaves its travel, and where the blocks are followed from that show which solution
   /// carries farthest.
   struct RewindCause {
     PathFault fault;
-    bool is_in_block = false;  ///< the tool rests on the way of the block, else where it begins
+    bool is_in_block = false;  ///< the tool rests on the path of the block, else where it begins
   };
   /// The solutions that a rewind at the rest of `cursor`, ahead of the rest of `block`, may lead
   /// to, best first. needs_ahead() is true where blocks are missing for the answer. The machine has
@@ -114,7 +114,7 @@ class Router {
   /// Of a block, the share that a leg is: all of it, or none where the block's time is not its own.
   static constexpr double kWhole = 1, kNoPart = 0;
 
-  /// A value of the redundant joint at the end of a way, from one branch and winding.
+  /// A value of the redundant joint at the end of a route, from one branch and winding.
   struct Candidate {
     JointVector joints{};
     double cost = 0;
@@ -184,7 +184,8 @@ class Router {
                               PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] PathFault run_held(PathPiece path, double free_end, const Job& job, double share,
                                    PlanCursor& cursor, Staging& out) noexcept;
-  /// A way with the axis fixed: on the redundant joint held where it is, or on the branch in force.
+  /// A route with the axis fixed: on the redundant joint held where it is, or on the branch in
+  /// force.
   [[nodiscard]] PathFault run_lift(const PathPiece& path, const Job& job, PlanCursor& cursor,
                                    Staging& out) noexcept;
   [[nodiscard]] int branch_of(const ToolPose& pose, const JointVector& joints,
@@ -223,7 +224,7 @@ class Router {
   /// Lifts a tool that is longer than the one that retract() led off the part as far as that was.
   [[nodiscard]] PathFault lift_longer_tool(const Job& rapid, PlanCursor& cursor,
                                            Staging& out) noexcept;
-  /// Fills in what is known of the way once it is staged from `begin` on.
+  /// Fills in what is known of the route once it is staged from `begin` on.
   void describe_approach(const Candidate& candidate, const Job& job, const PlanCursor& from,
                          const Staging::Mark& begin, const Staging& staged) noexcept;
   /// How far, up to `whole_mm`, the tool can leave `pose` along its axis inside travel and the tip

@@ -45,7 +45,7 @@ void keep_side(RobotPass& pass, Singularity at) noexcept {
 
 bool PassFit::fit(RobotPass& pass, double rest_turn) noexcept {
   if (!(pass.end - pass.begin > 2 * kSamePoint_mm)) return false;
-  // Beside both rounding would turn the roll of the exact way that leads there.
+  // Beside both rounding would turn the roll of the exact path that leads there.
   if (pass.at == SingularSet::kWristAndShoulder && pass.begin > range_.from &&
       is_beside_both(pass.begin)) {
     return false;

@@ -5,7 +5,7 @@
 
 namespace meridian {
 
-/// Lays the quintics of the redundant joints between the ends of a pass: they meet the exact way
+/// Lays the quintics of the redundant joints between the ends of a pass: they meet the exact path
 /// with two derivatives, or the joint rests there. Bounded work, no memory. Proof:
 /// tests/property/planner/singular_sweep_test.cpp.
 class PassFit {
@@ -17,11 +17,11 @@ class PassFit {
   [[nodiscard]] bool fit(RobotPass& pass, double rest_turn) noexcept;
   /// The joints at the begin of the pass that was fitted last.
   [[nodiscard]] const JointVector& reference() const noexcept { return reference_; }
-  /// Whether the exact way behind that pass keeps travel, as far as the range goes.
+  /// Whether the exact path behind that pass keeps travel, as far as the range goes.
   [[nodiscard]] bool leads_on(const RobotPass& pass) const noexcept;
 
  private:
-  /// On the exact way at the begin, `reference` becomes the joints there.
+  /// On the exact path at the begin, `reference` becomes the joints there.
   [[nodiscard]] bool fit_first(RobotPass& pass, double rest_turn,
                                JointVector& reference) const noexcept;
   /// Beside the yaw of `pass`, of which the roll is exact at both ends.
@@ -34,7 +34,7 @@ class PassFit {
   [[nodiscard]] bool ends_with_range(const RobotPass& pass) const noexcept {
     return !(pass.end < range_.to);
   }
-  /// The exact way at an end of a pass.
+  /// The exact path at an end of a pass.
   [[nodiscard]] Solution<Jet<2>> exactly(double u, int branch,
                                          const JointVector& reference) const noexcept;
   /// At an end, 0 or 1, with the yaw of `pass` and the wrist exact.
@@ -43,7 +43,7 @@ class PassFit {
   /// `value`, or the winding of it inside travel.
   [[nodiscard]] double inside_travel(int joint, double value) const noexcept;
 
-  /// A stretch of the exact way.
+  /// A stretch of the exact path.
   struct Stretch {
     double from = 0, to = 0;
     int branch = 0;

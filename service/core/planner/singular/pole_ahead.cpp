@@ -11,8 +11,8 @@
 
 /// What blocks behind the spans tell of a core. Part of PoleCorridor.
 ///
-///     ─ zone ─ core ─ zone ─┬─ exact, on spans ─┬─ programmed blocks ─▶ as far as a way carries
-///                           └ within reach      └ known_end: here the ways start
+///     ─ zone ─ core ─ zone ─┬─ exact, on spans ─┬─ programmed blocks ─▶ as far as a route carries
+///                           └ within reach      └ known_end: here the routes start
 namespace meridian {
 namespace {
 
@@ -37,7 +37,7 @@ bool PoleCorridor::foresee(PolePass& pass) noexcept {
   return true;
 }
 
-/// Whether another zone decides before the ways start.
+/// Whether another zone decides before the routes start.
 bool PoleCorridor::returns_to_pole(const PolePass& pass) const noexcept {
   const double begin = pass.end;
   for (PoleProbes::ProbeIndex n = probes_.end_probe() - 1; n >= probes_.begin_probe(); --n) {

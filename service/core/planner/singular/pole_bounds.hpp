@@ -9,8 +9,8 @@ namespace meridian {
 inline constexpr double kOnPoleTolerances = 0.2;
 /// Nearer, the redundant joint of a robot may rest where the machine stops.
 inline constexpr double kStopTolerances = 0.99;
-/// Nearer, a smooth run may go another way than the exact one, and change the branch; minima of the
-/// distance that are farther off leave that no room.
+/// Nearer, a smooth run may go another route than the exact one, and change the branch; minima of
+/// the distance that are farther off leave that no room.
 inline constexpr double kZoneTolerances = 2.5;
 /// Nearer, another minimum behind a place decides for itself.
 inline constexpr double kOtherTolerances = 3;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kCutGrowth = 1.5, kFarthestCut_mm = 5, kFirstCut = 0.25;
 constexpr double kMinPart_mm = 1e-6;
-constexpr int kShorter = 6;  // stretches that are tried where the whole one has no way
+constexpr int kShorter = 6;  // stretches that are tried where the whole one has no route
 constexpr double kShorterShare = 0.4;
 /// Spans farther off than this (11.5 deg) are not held back. u advances by at least 50 mm per rad
 /// of axis, so a zone beside them still has half of its reach.
@@ -173,7 +173,7 @@ void PoleCorridor::settle(PoleStretch& stretch) noexcept {
   }
 }
 
-/// Whether the exact way leads along the stretch from where the redundant joint is at its begin.
+/// Whether the exact path leads along the stretch from where the redundant joint is at its begin.
 bool PoleCorridor::may_be_exact(const PolePass& pass) const noexcept {
   if (pass.is_on_pole || pass.at_begin == PoleJoin::kHeld) return false;
   return pass.at_begin == PoleJoin::kExact || probes_.distance_at(pass.begin) >= tolerance_rad_;

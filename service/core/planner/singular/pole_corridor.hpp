@@ -15,7 +15,7 @@
 namespace meridian {
 
 /// From spans of the path to spans that joints follow: finds the places where the path comes close
-/// to the pole, lets the redundant joint take a shorter way there inside the axis tolerance, and
+/// to the pole, lets the redundant joint take a shorter course there inside the axis tolerance, and
 /// follows branch and winding behind it.
 ///
 ///     push(span) ... finish() ─▶ next() ... next() until it returns nullptr
@@ -58,7 +58,7 @@ class PoleCorridor {
   /// Whether next() returned nullptr because the look-ahead waits for blocks: no span is needed.
   [[nodiscard]] bool needs_ahead() const noexcept { return search_ == Search::kNeedsAhead; }
 
-  /// Whether no way on was found from where the redundant joint rests. What was handed out stays
+  /// Whether no route on was found from where the redundant joint rests. What was handed out stays
   /// valid, nothing comes behind it.
   [[nodiscard]] bool has_failed() const noexcept { return search_ == Search::kFailed; }
   /// The first span that is not handed out, or not all of it; nullptr: there is none.
@@ -89,7 +89,7 @@ class PoleCorridor {
   enum class Search : std::uint8_t {
     kGoesOn,
     kNeedsAhead,  ///< the look-ahead waits for blocks
-    kFailed       ///< there is no way on from where the redundant joint rests
+    kFailed       ///< there is no route on from where the redundant joint rests
   };
   /// How the joints go on behind zones.
   struct Course {
@@ -106,21 +106,21 @@ class PoleCorridor {
 
   /// Looks for stretches as far as enough of what follows is there.
   void scan() noexcept;
-  /// Finds out how far ways behind the stretch carry; false: blocks are missing.
+  /// Finds out how far routes behind the stretch carry; false: blocks are missing.
   [[nodiscard]] bool foresee(PolePass& pass) noexcept;
   [[nodiscard]] bool returns_to_pole(const PolePass& pass) const noexcept;
   void ask(const PolePass& pass) noexcept;
   /// Drives the redundant joint along the stretch, or cuts the spans there.
   void settle(PoleStretch& stretch) noexcept;
-  /// The way of the redundant joint along the stretch, empty: the exact one, or none was found.
-  /// Where no exact way leads, shorter stretches are tried as well.
+  /// The course of the redundant joint along the stretch, empty: the exact one, or none was found.
+  /// Where no exact path leads, shorter stretches are tried as well.
   [[nodiscard]] std::span<const PoleZone> find_string(PoleStretch& stretch) noexcept;
   void lead_to(PolePass& pass) const noexcept;
   [[nodiscard]] bool may_be_exact(const PolePass& pass) const noexcept;
   [[nodiscard]] bool is_on_pole(const PoleStretch& stretch) const noexcept;
   void add_cuts(double nearest) noexcept;
   void add_cut(double u) noexcept;
-  /// Joints of the exact way at `u`, the windings followed from where they are known.
+  /// Joints of the exact path at `u`, the windings followed from where they are known.
   [[nodiscard]] JointVector follow_to(double u) const noexcept;
   /// `piece` is the last one of a stretch: branch and winding behind it are known.
   void know_after(const PoleZone& piece) noexcept;

@@ -9,7 +9,7 @@
 
 namespace meridian {
 
-/// How many blocks ways behind the pole, or behind a rewind, carry, which may have to wait for
+/// How many blocks routes behind the pole, or behind a rewind, carry, which may have to wait for
 /// blocks.
 ///
 ///     ask() ─▶ look() ─ false: blocks are missing, again when there are more ─▶ routes()
@@ -17,7 +17,7 @@ class PoleLookAhead {
  public:
   virtual ~PoleLookAhead() = default;
 
-  /// Where ways start: at the end of block `sequence`, or on its way.
+  /// Where routes start: at the end of block `sequence`, or on its way.
   struct Start {
     std::uint64_t sequence = 0;
     bool is_on_path = false;
@@ -28,7 +28,7 @@ class PoleLookAhead {
   /// Whether the answer to what was asked last is known.
   [[nodiscard]] virtual bool look() noexcept = 0;
   [[nodiscard]] virtual std::span<const RouteAhead> routes() const noexcept = 0;
-  /// Behind look(): ways may carry farther than the answer says, for no more blocks are followed.
+  /// Behind look(): routes may carry farther than the answer says, for no more blocks are followed.
   [[nodiscard]] virtual bool is_cut_short() const noexcept = 0;
 };
 

@@ -15,7 +15,7 @@ namespace meridian {
 namespace {
 
 constexpr double kSameFree_rad = 1e-9;  // azimuths that differ less need no turn on the pole
-constexpr double kNearPole_rad = 2e-3;  // nearer the redundant joint is held on oblique ways
+constexpr double kNearPole_rad = 2e-3;  // nearer the redundant joint is held on oblique routes
 
 }  // namespace
 

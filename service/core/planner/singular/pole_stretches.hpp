@@ -25,11 +25,11 @@ struct PoleStretch {
   PoleProbes::ProbeIndex first = 0, last = 0;  ///< of the path close to the pole
   double nearest = 0;                          ///< u: where it comes closest first
   double close_begin = 0, close_end = 0;       ///< u: between them the path is close to the pole
-  bool has_room = false;  ///< the redundant joint may go another way than the exact one there
+  bool has_room = false;  ///< the redundant joint may go another route than the exact one there
 };
 
 /// Looks along the probes of a path for stretches close to the pole, or minima of the distance
-/// farther off, and says where the redundant joint may leave the exact way about one and be back.
+/// farther off, and says where the redundant joint may leave the exact path about one and be back.
 ///
 ///     find_next() ─▶ decide() ─▶ find_next() ... until false
 ///
@@ -58,7 +58,7 @@ class PoleStretches {
   /// Decides the place that was found. Behind anything but kNeedsSpans it is done with it.
   [[nodiscard]] Answer decide(PoleStretch& out) noexcept;
   /// Lets a stretch reach no farther than `reach_mm` to either side of what is close, where the
-  /// exact way leads there. False: it does not reach that far.
+  /// exact path leads there. False: it does not reach that far.
   [[nodiscard]] bool shorten(PoleStretch& stretch, double reach_mm) const noexcept;
   /// Takes the last answer back.
   void go_back_to(ProbeIndex probe) noexcept { probe_ = probe; }

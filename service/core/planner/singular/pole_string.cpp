@@ -15,7 +15,7 @@ namespace meridian {
 namespace {
 
 constexpr double kNoTime = std::numeric_limits<double>::infinity();
-constexpr double kMinGain_s = 1e-3;  // of the string over the exact way
+constexpr double kMinGain_s = 1e-3;  // of the string over the exact path
 constexpr double kSameWinding_rad = 0.5;
 constexpr int kMaxCourses = 2;  // that are tried, of those that lead on
 constexpr int kWallRounds = 8;  // of nearer walls where a result leaves the tolerance between nodes
@@ -53,7 +53,7 @@ std::span<const PoleZone> PoleString::find(const PoleTask& task, const PolePass&
 
 bool PoleString::is_exact_best() const noexcept { return best_count_ == 0 && best_time_ < kNoTime; }
 
-/// Of what leads on to ways that carry farthest, as far as there is such.
+/// Of what leads on to routes that carry farthest, as far as there is such.
 void PoleString::find_best() noexcept {
   int below = std::numeric_limits<int>::max();
   for (std::size_t level = 0; level + 1 < kMaxLevels && best_time_ == kNoTime; ++level) {
@@ -69,7 +69,7 @@ void PoleString::find_best() noexcept {
   if (!find_best({true, 0})) (void)find_best({});  // a rewind may help
 }
 
-/// Leaves no pieces where the exact way is the best. False: no way leads on.
+/// Leaves no pieces where the exact path is the best. False: no route leads on.
 bool PoleString::find_best(const Ahead& ahead) noexcept {
   const bool is_exact_kept = has_exact(ahead);
   if (is_exact_kept) best_time_ = exact_time() - kMinGain_s;

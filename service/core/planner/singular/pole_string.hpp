@@ -15,7 +15,7 @@ namespace meridian {
 
 /// Finds how the redundant joint goes along a stretch beside the pole: the string through its
 /// corridor, smoothed, on the sides of the walls that turn it least of those that lead to a branch
-/// and winding which carries farthest. Where the exact way takes less time, that.
+/// and winding which carries farthest. Where the exact path takes less time, that.
 ///
 /// The time is counted without regard to what lies around: the largest of |P'|/F, |q'|/V,
 /// √(|q''|/A), ∛(|q'''|/J) over all joints. Every result is checked against tolerance and travel
@@ -25,16 +25,16 @@ class PoleString {
  public:
   PoleString();
 
-  /// The pieces of the stretch, one behind the other; none: the exact way has it. Valid until the
+  /// The pieces of the stretch, one behind the other; none: the exact path has it. Valid until the
   /// next call.
   [[nodiscard]] std::span<const PoleZone> find(const PoleTask& task, const PolePass& pass) noexcept;
-  /// Whether there were no pieces because the exact way is the best.
+  /// Whether there were no pieces because the exact path is the best.
   [[nodiscard]] bool is_exact_best() const noexcept;
 
  private:
   static constexpr std::size_t kMaxLevels = 4;
 
-  /// What a way behind the stretch has to carry.
+  /// What a route behind the stretch has to carry.
   struct Ahead {
     bool keeps_travel = false;  ///< as far as it is known
     int blocks = 0;

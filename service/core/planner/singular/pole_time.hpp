@@ -11,7 +11,7 @@
 #include "meridian/path/pose_at.hpp"
 #include "service/core/planner/singular/pole_zone.hpp"
 
-/// How long ways beside the pole take, without regard to what lies around: the largest of |P'|/F,
+/// How long routes beside the pole take, without regard to what lies around: the largest of |P'|/F,
 /// |q'|/V, √(|q''|/A), ∛(|q'''|/J) over all joints, summed up. Units: mm, rad, s. No memory.
 /// Source: docs/motion.md, section 10.
 namespace meridian {

@@ -5,14 +5,14 @@
 
 namespace meridian {
 
-/// The exact way on a branch behind a zone.
+/// The exact path on a branch behind a zone.
 struct RouteAfter {
   bool keeps_travel = false;  ///< every joint and drive
   bool is_to_end = false;     ///< it was followed to PolePass::known_end
   double free = 0;            ///< the redundant joint there
 };
 
-/// Follows the exact way on `branch` from `begin`, where windings are near `joints`, to
+/// Follows the exact path on `branch` from `begin`, where windings are near `joints`, to
 /// PolePass::known_end, or to where the path behind the reach comes close to the pole again, where
 /// another zone decides. Steps of at most 0.5 mm, so short that no turn of the redundant joint is
 /// missed. Units: mm, rad. No memory. Context: planner thread.

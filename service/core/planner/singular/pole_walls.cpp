@@ -26,7 +26,7 @@ constexpr double kMinTime_s = 1e-9;        // between nodes: times ascend
 constexpr double kProbe_rad = 1e-2;        // of axes that show how the redundant joint turns
 constexpr double kSmallAxis_rad = 4e-9;    // nearer, the exact redundant joint is not asked for
 constexpr int kSides = 1, kLastSides = 3;  // beside the nearest that are tried
-constexpr std::int32_t kMaxAlike = 8;      // ways past one wall that are kept
+constexpr std::int32_t kMaxAlike = 8;      // routes past one wall that are kept
 
 }  // namespace
 
@@ -245,7 +245,7 @@ bool PoleWalls::pass(Run& run, std::span<const Course> from, std::int32_t base,
   return run.end > run.begin;
 }
 
-/// Leaves out what another way reaches by a turn in the gate behind, and what is far from least.
+/// Leaves out what another route reaches by a turn in the gate behind, and what is far from least.
 void PoleWalls::prune(Run& run, bool is_last) noexcept {
   const auto begin = courses_.begin() + run.begin, end = courses_.begin() + run.end;
   std::sort(begin, end, [](const Course& a, const Course& b) {

@@ -35,7 +35,7 @@ class PoleWalls {
     std::array<double, 2> middle{};  ///< of the corridor on either branch, in a wall
     double half = 0;                 ///< its half width
     bool is_wall = false;
-    bool is_pinned = false;  ///< the exact way begins or ends here
+    bool is_pinned = false;  ///< the exact path begins or ends here
   };
   /// What the sides of all walls cost, and which way on the last of them leads.
   struct Course {
@@ -56,7 +56,7 @@ class PoleWalls {
   /// Looks along the stretch, as far as it is known. False: too long or too sharp to be followed.
   [[nodiscard]] bool look(const PoleTask& task, const PolePass& pass) noexcept;
 
-  /// Finds the ways past all walls, of those that lead to the same side of the last the shortest;
+  /// Finds the routes past all walls, of those that lead to the same side of the last the shortest;
   /// the shortest first. `value`: the redundant joint at the begin.
   [[nodiscard]] std::span<const Course> find_courses(double value) noexcept;
 
@@ -71,7 +71,7 @@ class PoleWalls {
   static constexpr std::size_t kRuns = 512;
   static constexpr std::size_t kCourses = 8 * kRuns;
 
-  /// Nodes [first, last) of one wall, and the ways that lead past it.
+  /// Nodes [first, last) of one wall, and the routes that lead past it.
   struct Run {
     std::size_t first = 0, last = 0;
     std::int32_t begin = 0, end = 0;

@@ -45,7 +45,7 @@ enum class PoleJoin : std::uint8_t {
 struct PolePass {
   double begin = 0, end = 0;  ///< u
   PoleJoin at_begin = PoleJoin::kExact, at_end = PoleJoin::kExact;
-  bool is_on_pole = false;  ///< it meets the pole: the exact way has no azimuth there
+  bool is_on_pole = false;  ///< it meets the pole: the exact path has no azimuth there
   int branch = 0;           ///< on the way in
   JointVector joints{};     ///< at the begin
   double rate = 0;          ///< of the redundant joint at the begin by u, where that is kHeld

@@ -102,7 +102,7 @@ class Search {
     }
     return best;
   }
-  /// Beside both singularities rounding turns the roll of the exact way: no more of it than helps.
+  /// Beside both singularities rounding turns the roll of the exact path: no more of it than helps.
   [[nodiscard]] static bool is_better(double time, const Best& best) noexcept {
     constexpr double kClearly = 0.999;
     const bool is_of_both = best.pass.at == SingularSet::kWristAndShoulder;
@@ -183,7 +183,7 @@ class Search {
     return std::abs(end - u) < kSamePoint_mm ? end : u;
   }
 
-  /// Of the exact way, where a pass of the width `to` is narrower than one of `from`.
+  /// Of the exact path, where a pass of the width `to` is narrower than one of `from`.
   [[nodiscard]] double time_beside(double from, double to) const noexcept {
     const SingularSet at = only(range_.at);
     return time_exactly(begin_at(at, from), begin_at(at, to)) +

@@ -109,12 +109,12 @@ struct PassCourse {
 /// Whether `pose` is so near a singular place that the redundant joint turns fast there.
 [[nodiscard]] bool is_near_singularity(const PassCourse& course, const ToolPose& pose) noexcept;
 
-/// Whether the way from `from` to the end of `block`, whose axis is unit, comes so near one.
+/// Whether the path from `from` to the end of `block`, whose axis is unit, comes so near one.
 [[nodiscard]] bool comes_near_singularity(const PassCourse& course, const ToolPose& from,
                                           const ClBlock& block) noexcept;
 
 /// Picks the pass with the least time between `from` and `to`. Candidates are quintics of the
-/// redundant joint that meet the exact way with two derivatives at both ends, out on the same
+/// redundant joint that meet the exact path with two derivatives at both ends, out on the same
 /// branch or on the one with the bend, or the arm, turned over: straight through, the joint hardly
 /// turns. A pass that meets the other singularity drives the redundant joints of both. Where the
 /// nearest winding is outside travel, the joint turns the other way round; where a

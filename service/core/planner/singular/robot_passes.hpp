@@ -76,7 +76,7 @@ class RobotPasses : private SpanLookup {
   [[nodiscard]] bool settle(Singularity at, double nearest) noexcept;
   [[nodiscard]] PassTask task() const noexcept;
   /// Whether a pass is to begin where the last one ends: joints rest there, or both singularities
-  /// are so near that rounding would turn the roll of the exact way.
+  /// are so near that rounding would turn the roll of the exact path.
   [[nodiscard]] bool goes_on() const noexcept;
   /// To which of them the path is nearer at `u` than `share` of the tolerance.
   [[nodiscard]] SingularSet singular_at(double u, double share) const noexcept;

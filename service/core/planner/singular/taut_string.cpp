@@ -8,7 +8,7 @@
 namespace meridian {
 namespace {
 
-/// A straight part of the way: as far as window `last`, by `slope`.
+/// A straight part of the route: as far as window `last`, by `slope`.
 struct Straight {
   std::size_t last = 0;
   double slope = 0;
