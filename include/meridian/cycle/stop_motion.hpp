@@ -100,6 +100,7 @@ inline void lay_out_stop(CycleState& state, const PathState& begin,
 /// Whether a law with `authority` from `begin` gets no faster than one from the plan there. While
 /// the rate of plan time still rises, of a resume, it adds to s̈: the planner reckons with the s̈ of
 /// the plan, and the law could let go of more above the velocity that a joint has.
+/// Proof: tests/unit/cycle/stop_rise_test.cpp.
 [[nodiscard]] inline bool is_rise_planned(const Cycle& c, const PathState& begin,
                                           const StopMargin& authority) noexcept {
   constexpr double kRounding = 1 + 1e-9;
