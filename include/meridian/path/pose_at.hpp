@@ -31,7 +31,7 @@ template <class S>
 }
 
 /// The same, bit for bit but for the sign of zero, of a jet. Where it is the variable itself most
-/// of its products are by 0 and 1.
+/// of its products are by 0 and 1. Proof: tests/unit/path/quartic_jet_test.cpp.
 template <int N>
 [[nodiscard]] inline Jet<N> quartic_at(const std::array<double, 5>& c, const Jet<N>& x) noexcept {
   bool is_variable = x.c[1] == 1;

@@ -32,7 +32,8 @@ struct SmoothedWindow {
 /// third differences under a ball about every sample of the polyline, by ADMM on one banded
 /// Cholesky factor; then verifies every span and pulls back those that do not keep the tolerances
 /// towards the points as they were, which were verified before. Source: docs/motion.md, 1.3
-/// and 1.4. Allocates at construction.
+/// and 1.4. Allocates at construction. Proof:
+/// tests/unit/path/band_smoother_test.cpp, tests/property/path.
 class BandSmoother {
  public:
   explicit BandSmoother(const BandTuning& tuning);
