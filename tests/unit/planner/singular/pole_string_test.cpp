@@ -111,5 +111,37 @@ TEST(PoleString, LeavesTheExactWayToItselfWhereItIsFaster) {
   EXPECT_TRUE(far.string.is_exact_best());
 }
 
+TEST(PoleString, TurnsOverOnlyWhereTheTiltKeepsItsTravelAfterwardsToo) {
+  constexpr int kTilt = 4;
+  for (const double room_rad : {0.2, 0.1}) {
+    Walled path(0.0005);
+    path.pass.known_end = 100;
+    const double tilt = path.joints_at(100, 1)[kTilt];  // 0.16 rad to the other side
+    JointLimits& limits = path.model.joints[kTilt].limits;
+    (tilt < 0 ? limits.travel_min : limits.travel_max) = tilt < 0 ? -room_rad : room_rad;
+    PoleString string;
+    const auto pieces = string.find(path.task, path.pass);
+    EXPECT_EQ(!pieces.empty() && pieces.front().is_through, room_rad > std::abs(tilt)) << tilt;
+  }
+}
+
+TEST(PoleString, EndsOnTheWindingThatACircleAboutThePoleTurnsTheJointTo) {
+  for (const double whole_rad : {1.6 * std::numbers::pi, -1.6 * std::numbers::pi}) {
+    const auto round = [whole_rad](double u) {
+      const double azimuth = whole_rad * std::clamp((u - 50) / 20, 0.0, 1.0);
+      const double away = std::max({0.0, 50 - u, u - 70});
+      const double off = 0.003 + 0.004 * away;  // farther off than the tolerance
+      return Lean{off * std::cos(azimuth), off * std::sin(azimuth)};
+    };
+    Walled path(120, round, 40, 80);
+    path.pass.known_end = 100;
+    PoleString string;
+    const auto pieces = string.find(path.task, path.pass);
+    ASSERT_FALSE(pieces.empty());
+    const double turn = pieces.back().free.back() - pieces.front().free.front();
+    EXPECT_NEAR(std::abs(turn), std::abs(whole_rad), 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace meridian::test::pole_string
