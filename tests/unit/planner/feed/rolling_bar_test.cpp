@@ -53,5 +53,22 @@ TEST(RollingBar, ASecondProgrammeGainsWhereTheFirstLeadsAway) {
   EXPECT_GT(thrice, 0.99 * twice) << "more of them hardly gain";
 }
 
+TEST(RollingBar, IsMadeAnewWhereLimitsBindAwayFromTheTangent) {
+  struct Case {
+    double accel, jerk, max_s;
+  };
+  // Seconds: 1.0500 and 0.5289; with a programme less 1.0526 and 0.5313.
+  for (const Case& c : {Case{100, 627, 1.0515}, {1000, 6270, 0.53}}) {
+    MachineModel model = bench_machine();
+    model.joints[1].limits.acceleration = c.accel;
+    model.joints[1].limits.jerk = c.jerk;
+    Rolled one(without_reserve(), model);
+    add_swing(one);
+    one.run();
+    EXPECT_LT(one.duration(), c.max_s);
+    EXPECT_LE(one.use(one.pieces()).worst(), 1 + 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace meridian::test::rolling_bar

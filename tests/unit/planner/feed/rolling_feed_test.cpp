@@ -222,6 +222,11 @@ TEST(RollingFeed, SpendsNoMoreRoundsOfTheSolverThanItMay) {
   none.run();
   EXPECT_EQ(none.feed.count().solves, 0);
   EXPECT_EQ(none.feed.count().crawls, none.feed.count().windows);
+  settings.max_rounds = 1;
+  Rolled one(settings);
+  one.add_bent(40, 1000);
+  one.run();
+  EXPECT_EQ(one.feed.count().solves, one.feed.count().windows) << "the first may begin";
 }
 
 TEST(RollingFeed, AFaultEndsThePathAndWhatIsBeforeIsStillPlanned) {

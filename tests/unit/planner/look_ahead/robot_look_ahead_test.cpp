@@ -105,6 +105,15 @@ TEST(RobotLookAhead, GoesStraightThroughASingularPlaceWhereTheSlackLetsIt) {
   EXPECT_EQ(follow_ahead(model, {}, start, blocks), 0);
 }
 
+TEST(RobotLookAhead, FollowsAJointHoweverFastItTurnsBesideASingularPlace) {
+  for (const double beside_rad : {1e-4, 1e-8, 1e-14}) {  // half a turn in 0.1 mm, or at once
+    const WristPath path(beside_rad);
+    const RobotStart start{path.model.tool_length_mm, path.pose(0), path.branch, path.begin_joints};
+    const std::vector<ClBlock> blocks{cut_to(path.pose(WristPath::kLength_mm))};
+    EXPECT_EQ(follow_ahead(path.model, {}, start, blocks), 1) << beside_rad;
+  }
+}
+
 TEST(RobotLookAhead, ComesBackOutOfASingularPlaceOnTheSideThatItWentIn) {
   const WristPath path(1e-4);
   MachineModel model = path.model;
