@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -69,6 +70,7 @@ TEST(RobotPassRest, TheRollTurnsToWhereTheBendMayRest) {
     const double turn = pass.joint.back() - pass.joint.front();
     EXPECT_LT(std::abs(straight.joint.back() - straight.joint.front()), 0.1);
     EXPECT_GT(std::abs(turn), 1.5);
+    EXPECT_LT(std::abs(turn), std::numbers::pi) << "the short way round";
     EXPECT_EQ(turn > 0, beside_rad < 0) << "to the side on which the path passes";
     const Course course(path, range_of(path, 9.9, 10.1), pass);
     EXPECT_GE(course.min_bend, beside_rad > 0 ? -1e-6 : -1);
