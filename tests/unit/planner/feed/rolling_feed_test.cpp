@@ -206,6 +206,11 @@ TEST(RollingFeed, GoesOnWhereThePlanBeforeSlowedDownForJerk) {
   EXPECT_LE(one.use(pieces).worst(), kLimit);
   EXPECT_LT(one.duration(), 3.4);
   EXPECT_EQ(one.feed.count().kept + one.feed.count().crawls, 0);
+  std::int64_t next = 0;
+  for (const RolledWindow& window : one.windows) {
+    EXPECT_EQ(window.rest_cell, std::min(next + 120, one.feed.grid().last())) << "as far as it may";
+    next = window.committed.back().cell + 1;
+  }
 }
 
 TEST(RollingFeed, SpendsNoMoreRoundsOfTheSolverThanItMay) {
