@@ -45,6 +45,9 @@ struct Ran {
     start.epoch = 3;
     start.path_index = 70;
     start.window = 11;
+    begin();
+  }
+  void begin() {
     BandTolerance tolerance;
     tolerance.pole = to_array(pole_direction(model));
     run.begin(start, tolerance, kTolerance_rad);
@@ -103,6 +106,28 @@ TEST(SmoothRun, AShortPathIsOneWindowFromRestToRest) {
     EXPECT_EQ(piece.epoch, 3);
   }
   EXPECT_EQ(one.run.next_window(), 12U);
+}
+
+TEST(SmoothRun, BeginsAnewWhereTheRunBeforeEnded) {
+  Ran one;
+  one.cut_straight(3, 2);
+  ASSERT_EQ(one.finish(), Status::kDone);
+  const std::vector<TimePiece> first = one.times();
+  one.start.pose = one.start.programmed = one.pose;
+  one.start.joints = one.run.joints();
+  one.start.path_index = one.run.next_path_index();
+  one.start.window = one.run.next_window();
+  one.begin();
+  one.cut_straight(3, 2);
+  EXPECT_EQ(one.status, Status::kNeedsBlocks);
+  ASSERT_EQ(one.finish(), Status::kDone);
+  const std::vector<TimePiece> both = one.times();
+  ASSERT_EQ(both.size(), 2 * first.size()) << "the same again";
+  double first_s = 0, second_s = 0;
+  for (const TimePiece& piece : both) {
+    (piece.window == first.front().window ? first_s : second_s) += piece.duration;
+  }
+  EXPECT_NEAR(second_s, first_s, 1e-3);
 }
 
 TEST(SmoothRun, EndsWithTheJointsOfTheLastBlock) {
