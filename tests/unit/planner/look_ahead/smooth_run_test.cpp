@@ -306,6 +306,22 @@ TEST(SmoothRun, EndsAheadOfABlockThatLeavesTravelAndNamesIt) {
   EXPECT_LT((rest.tip - kBegin.tip)[0], 51);
 }
 
+TEST(SmoothRun, NamesTheBlockThatLeavesTravelAmongShortOnes) {
+  for (const int wanted : {28, 29, 30, 31, 32, 33}) {
+    MachineModel model = bench_machine();
+    ToolPose at = kBegin;
+    at.tip[0] += 48.05 + 0.1 * wanted;  // in the middle of the short block
+    model.joints[0].limits.travel_max = solve(model, model.tool_length_mm, at, 0, {}).q[0];
+    Ran one(model);
+    one.cut_straight(24, 2);
+    one.cut_straight(100, 0.1);
+    for (int n = 0; n < 150 && !one.run.has_fault(); ++n) one.cut_straight(1, 2);
+    ASSERT_TRUE(one.run.has_fault());
+    EXPECT_EQ(one.run.faulty_block().sequence, static_cast<std::uint64_t>(40 + 24 + wanted));
+    EXPECT_EQ(one.run.faulty_block().line, static_cast<std::uint32_t>(140 + 24 + wanted));
+  }
+}
+
 TEST(SmoothRun, ReportsWhereTheAxisIsRelaxedPastThePole) {
   const auto at = [](double x) {
     return ToolPose{Vector3(x, 0, 0), Vector3(0.0005, 0.004 * x, 1).normalized()};
