@@ -169,6 +169,35 @@ TEST(SmoothWorkspace, RunsAlongThePoleWhereTheAxisStaysOnIt) {
   EXPECT_EQ(one.rests(), 1);
 }
 
+TEST(SmoothWorkspace, RunsOntoThePoleAlongItAndOffAgain) {
+  Planned one;
+  one.cut({20, 0, 0}, Vector3::UnitZ());
+  one.cut({10, 0, 0});
+  one.cut({20, 0, 0}, kTilted);
+  one.add(BlockKind::kEnd);
+  EXPECT_EQ(one.rests(), 1);
+}
+
+TEST(SmoothWorkspace, KeepsHalfOfTheAxisToleranceForThePoleBesideIt) {
+  const auto leaning = [](double x, double y) { return Vector3(x, y, 1).normalized(); };
+  for (const PolePolicy policy : {PolePolicy::kRelax, PolePolicy::kExact}) {
+    MachineModel model = bench_machine();
+    model.pole_policy = policy;
+    Planned one({Transition::kSmooth, 0, 0}, leaning(0.01, -0.1), model);
+    one.cut({20, 0, 0}, leaning(0.01, 0));
+    one.cut({20, 0, 0}, leaning(0.11, 0));
+    one.add(BlockKind::kEnd);
+    double nearest = 1;  // of the corner, in tolerances
+    for (const PathPiece& piece : one.paths()) {
+      for (int k = 0; k <= 50; ++k) {
+        const Vector3 at = pose_at(piece, piece.length * k / 50).axis;
+        nearest = std::min(nearest, (at - leaning(0.01, 0)).norm() / model.tolerances.axis_rad);
+      }
+    }
+    EXPECT_EQ(nearest <= 0.5, policy == PolePolicy::kRelax) << nearest;
+  }
+}
+
 TEST(SmoothWorkspace, LeadsOffThePoleFromRestAndRunsOnBehind) {
   Planned one({Transition::kSmooth, 0, 0}, Vector3::UnitZ());
   one.cut({5, 0, 0}, kTilted);

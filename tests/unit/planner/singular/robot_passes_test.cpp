@@ -234,12 +234,24 @@ TEST(RobotPassesSpans, PassBothSingularitiesInsideBothTolerances) {
 }
 
 TEST(RobotPassesSpans, MoveTheAxisHardlyWhereNothingMayGive) {
-  WristPath path(1e-5);
+  WristPath path(1e-6);
   path.model.pole_policy = PolePolicy::kExact;
+  for (const double nearest : {30.0, 30.03, 30.06}) {  // spans are measured every 0.125 mm
+    Passed one(path, 60, nearest);
+    one.run();
+    expect_whole(one);
+    EXPECT_FALSE(one.driven().empty()) << nearest;
+    EXPECT_LT(Followed(one).off_rad, 1e-5);
+  }
+}
+
+TEST(RobotPassesSpans, AreThePathItselfWhereThereIsNoPass) {
+  WristPath path(1e-4);
+  path.model.joints[robot::kElbow].limits.travel_max = path.middle[robot::kElbow] - 0.1;
   Passed one(path, 60, 30);
   one.run();
-  expect_whole(one);
-  EXPECT_LT(Followed(one).off_rad, 1.01e-5);
+  EXPECT_EQ(one.out.size(), one.spans.size());
+  EXPECT_TRUE(one.driven().empty());
 }
 
 TEST(RobotPassesSpans, AreThoseOfThePathOnAnyOtherMachine) {
