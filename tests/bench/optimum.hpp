@@ -135,8 +135,8 @@ struct RollingTime {
 /// What the optimum is allowed: all of the limits and no room for the override unless it says so.
 struct OptimumTask {
   RateReserve reserve{0, 0};
-  double cell_s = 0.002;
-  int max_passes = 12;  ///< of linearisation
+  double cell_s = 0.002, rest_s = 0.004;  ///< CellSettings
+  int max_passes = 12;                    ///< of linearisation
 };
 
 struct Optimum {
@@ -152,6 +152,7 @@ class OptimumSearch {
       : task_(task), limits_(make_feed_limits(model, task.reserve)) {
     CellSettings settings;
     settings.cell_s = task.cell_s;
+    settings.rest_s = task.rest_s;
     settings.feed_share = 1;
     settings.kept_cells = 1 << 16;
     grid_ = std::make_unique<CellGrid>(model, limits_, settings);
@@ -169,11 +170,14 @@ class OptimumSearch {
     pass_without_jerk(out);
     JerkStep solver(*grid_, limits_, static_cast<int>(cells_));
     for (; out.passes < task_.max_passes; ++out.passes) {
-      if (!solver.solve(problem())) break;
+      if (!solver.solve(problem())) {
+        if (out.time_s > 0) break;
+        lower_bar();
+        continue;
+      }
       const double time = time_of(solver), before = out.time_s;
       if (before == 0 || time < before) out.time_s = time;
-      for (std::size_t k = 0; k <= cells_; ++k) knots_[k] = solver.b(static_cast<int>(k));
-      for (std::size_t k = 0; k < cells_; ++k) middles_[k] = solver.middle(static_cast<int>(k));
+      linearise_at(solver);
       if (before > 0 && time > before * (1 - kEnough)) break;
     }
     return out;
@@ -182,6 +186,7 @@ class OptimumSearch {
  private:
   static constexpr double kEnough = 2e-5;     // gained by a pass, of the time
   static constexpr double kMin = 1e-6;        // of u̇² to linearise at, of the largest
+  static constexpr double kLower = 0.3;       // where no plan is found at the bound
   static constexpr std::int64_t kReach = 12;  // cells beside a rest whose limits its speed keeps
 
   [[nodiscard]] double h(std::size_t k) const {
@@ -215,6 +220,22 @@ class OptimumSearch {
     }
   }
 
+  void lower_bar() {
+    for (double& b : knots_) b *= kLower;
+    for (double& b : middles_) b *= kLower;
+  }
+
+  /// With b' too: the room for the override is then asked for where the joints are, not where they
+  /// may be.
+  void linearise_at(const JerkStep& solver) {
+    slopes_.resize(cells_ + 1);
+    for (std::size_t k = 0; k <= cells_; ++k) {
+      knots_[k] = solver.b(static_cast<int>(k));
+      slopes_[k] = solver.slope(static_cast<int>(k));
+    }
+    for (std::size_t k = 0; k < cells_; ++k) middles_[k] = solver.middle(static_cast<int>(k));
+  }
+
   [[nodiscard]] JerkProblem problem() const {
     JerkProblem out;
     out.first = 1;
@@ -224,6 +245,7 @@ class OptimumSearch {
     out.bar_knots = knots_.data();
     out.bar_middles = middles_.data();
     out.accel_share = out.jerk_share = share_.data();
+    out.bar_slopes = slopes_.empty() ? nullptr : slopes_.data();
     return out;
   }
 
@@ -245,7 +267,7 @@ class OptimumSearch {
   bool is_ready_ = false;
   std::size_t cells_ = 0;  ///< without the two at the rests
   RestCell start_, stop_;
-  std::vector<double> knots_, middles_, share_;
+  std::vector<double> knots_, middles_, share_, slopes_;
 };
 
 }  // namespace meridian::bench

@@ -62,7 +62,7 @@ void CellGrid::begin(const JointVector& joints, double tool_length_mm) noexcept 
   last_h_ = 0;
   joints_ = joints;
   tool_length_mm_ = tool_length_mm;
-  is_finished_ = false;
+  is_finished_ = is_begin_graded_ = false;
   fault_ = {};
 }
 
@@ -105,6 +105,7 @@ PathFault CellGrid::finish() noexcept {
   while (last_ == 0 && !drafts_.empty() && drafts_.size() < kMin) {
     halve(std::numeric_limits<double>::infinity(), 0, 1);
   }
+  grade_end();
   return make_cells();
 }
 
@@ -114,7 +115,7 @@ void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
     return cell.span < number || (cell.span == number && cell.x < x - kNoCell_mm);
   };
   fault_ = {};
-  is_finished_ = true;
+  is_finished_ = is_begin_graded_ = true;
   drafts_.clear();
   waiting_count_ = 0;
   const std::int64_t kept = std::max(first_, smallest);
@@ -157,6 +158,7 @@ PathFault CellGrid::make_cells() noexcept {
     const int after = waiting_count_ - 1 - drafts_[used].waiting;
     const bool is_long_enough = last_ > 0 || drafts_.size() - used >= kMin;
     if (!is_finished_ && (after < kAhead || !is_long_enough)) break;
+    if (!is_begin_graded_) grade_begin();
     fault_ = make_cell(drafts_[used]);
     if (fault_.kind == PathFault::Kind::kJump && split(used)) {
       fault_ = {};

@@ -46,6 +46,7 @@ struct FeedCell {
 /// How spans become cells.
 struct CellSettings {
   double cell_s = 0.004;       ///< time that a cell takes at full speed, about
+  double rest_s = 0.01;        ///< that the first and the last one take, about
   double feed_share = 0.9985;  ///< of the programmed feed that is planned
   int kept_cells = 512;        ///< at a time; a power of two
 };
@@ -147,6 +148,13 @@ class CellGrid {
   /// Halves cells longer than `ratio` times a neighbour; `left` is the one before the first.
   void halve(double left, double ratio, int rounds) noexcept;
   [[nodiscard]] bool split(std::size_t draft) noexcept;
+  /// Cells of the path beside the rests at both of its ends, graded by the distance to them.
+  void grade_begin() noexcept;
+  void grade_end() noexcept;
+  /// How far the machine comes from a rest at `x` in CellSettings::rest_s.
+  [[nodiscard]] double length_from_rest(const FeedSpan& span, double x) const noexcept;
+  void draft_from_rest(Draft rest, double first, bool is_end, std::size_t to_come,
+                       double& from_rest) noexcept;
   [[nodiscard]] PathFault make_cell(const Draft& draft) noexcept;
 
   const MachineModel& model_;
@@ -161,7 +169,7 @@ class CellGrid {
   double last_h_ = 0;  ///< length of the last cell made
   JointVector joints_{};
   double tool_length_mm_ = 0;
-  bool is_finished_ = false;
+  bool is_finished_ = false, is_begin_graded_ = false;
   PathFault fault_;
   std::uint64_t faulty_span_ = 0;
   double faulty_x_ = 0;

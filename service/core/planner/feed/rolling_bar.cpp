@@ -12,6 +12,16 @@ constexpr double kOldShare = 0.6;  // of the bound: an old plan above it is wort
 constexpr double kMinBar = 1e-6;   // of the largest, or of the one before
 constexpr double kNearBar = 0.05;  // of u̇²: the tangent there is as good as that at the plan
 constexpr double kLoose = 0.9;     // of what rows leave: none of them binds
+constexpr double kTiniestJerk = 1e-30;
+
+/// u̇² at the distance `u` from a rest, under the jerk that the joints allow at the rest itself.
+double beside_rest(const FeedLimits& limits, const CellSample& rest, double u) noexcept {
+  double per_jerk = 0;
+  for (int i = 0; i < limits.count; ++i) {
+    per_jerk = std::max(per_jerk, std::abs(rest.d1[i]) / limits.full_jerk[i]);
+  }
+  return square(std::cbrt(square(6 * u)) / (2 * std::cbrt(std::max(per_jerk, kTiniestJerk))));
+}
 
 /// Share of the jerk that a tangent of b^-½ leaves where b is `ratio` times that of the tangent.
 double left_by_tangent(double ratio) noexcept { return (1.5 - 0.5 * ratio) * std::sqrt(ratio); }
@@ -27,6 +37,7 @@ void RollingFeed::choose_bar(const Attempt& how) noexcept {
     const double steady = how.is_steady ? steady_b(grid_, planned_, cell, cell + 1) : bound_[k];
     bar_knots_[k] = std::max(std::min(bound_[k], steady), kMinBar * largest);
   }
+  lower_beside_rests(largest);
   std::fill_n(bar_slopes_.begin(), cells + 1, JerkCell::kUnknown);
   if (how.is_around_old && !is_at_rest_) {
     // Up to where the old plan turns to its rest, which is no guide: there it falls behind the
@@ -45,10 +56,33 @@ void RollingFeed::choose_bar(const Attempt& how) noexcept {
   for (int k = 0; k < cells; ++k) bar_middles_[k] = 0.5 * (bar_knots_[k] + bar_knots_[k + 1]);
 }
 
+/// Beside a rest u̇² grows by u^4/3 under full jerk, and by u in a bound without jerk: a tangent at
+/// that one would ask for a fraction of the jerk.
+void RollingFeed::lower_beside_rests(double largest) noexcept {
+  const int cells = new_.cells();
+  const auto lower = [&](int knot, const CellSample& rest, double u) {
+    const double b = beside_rest(planned_, rest, u);
+    bar_knots_[knot] = std::min(bar_knots_[knot], b);
+    return b < largest;
+  };
+  const FeedCell& last = grid_[new_.end - 1];
+  double u = last.h;
+  for (int k = cells; k >= 0 && lower(k, last.at.back(), u); --k) {
+    if (k > 0) u += grid_[new_.first + k - 1].h;
+  }
+  if (!is_at_rest_) return;
+  const FeedCell& first = grid_[next_];
+  u = first.h;
+  for (int k = 0; k <= cells && lower(k, first.at.front(), u); ++k) {
+    if (k < cells) u += grid_[new_.first + k].h;
+  }
+}
+
 /// Whether what stands of the result is where jerk was linearised, or far from its limits there:
 /// again would gain nothing.
 bool RollingFeed::is_near_bar() const noexcept {
-  const int near = std::min(new_.cells(), settings_.max_commit_cells);
+  const bool is_last = grid_.is_complete() && new_.end == grid_.last();  // all of it stands
+  const int near = is_last ? new_.cells() : std::min(new_.cells(), settings_.max_commit_cells);
   for (int k = 0; k < near; ++k) {
     const bool has_tangent = !std::isnan(bar_slopes_[k]);
     const double ratio = new_.b[k] / bar_knots_[k];

@@ -141,6 +141,7 @@ class RollingFeed {
   [[nodiscard]] double start_b(std::int64_t first, std::int64_t end) noexcept;
   [[nodiscard]] double stop_b(std::int64_t first, std::int64_t end) const noexcept;
   void choose_bar(const Attempt& how) noexcept;
+  void lower_beside_rests(double largest) noexcept;
   [[nodiscard]] bool refine() noexcept;
   /// What the plan uses of the limits, cell by cell. Whether it keeps them.
   [[nodiscard]] bool check() noexcept;
