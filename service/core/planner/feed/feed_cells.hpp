@@ -46,7 +46,7 @@ struct FeedCell {
 /// How spans become cells.
 struct CellSettings {
   double cell_s = 0.004;       ///< time that a cell takes at full speed, about
-  double rest_s = 0.01;        ///< that the first and the last one take, about
+  double rest_s = 0.007;       ///< that the first and the last one take, about
   double feed_share = 0.9985;  ///< of the programmed feed that is planned
   int kept_cells = 512;        ///< at a time; a power of two
 };

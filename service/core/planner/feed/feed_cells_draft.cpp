@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMinSplit_mm = 5e-4;  // of u: below, motion would creep
 constexpr double kMaxCells = 2;        // of time, that one takes where it is slowest
-constexpr double kUneven = 1.3;        // of the time per u within a span: it is about a bend
+constexpr double kUneven = 1.05;       // of the time per u within a span: it is about a bend
 constexpr double kFiner = 2;           // times as many cells there
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace meridian {
 namespace {
 
 constexpr double kRestGrowth = 0.15;  // of the distance to the rest: no cell is longer
-constexpr double kMinRest_mm = 5e-4;  // of u: below, motion would creep
+constexpr double kMinRest_mm = 2e-3;  // of u: below, motion would creep
 
 }  // namespace
 

@@ -10,7 +10,7 @@
 namespace meridian {
 namespace {
 
-constexpr double kRestShare = 0.98;  // of the limits in a first or last cell
+constexpr double kRestShare = 0.92;  // of the limits in a first or last cell
 constexpr double kRestStep = 0.7;    // of the ladder
 constexpr int kRestSteps = 120;
 constexpr int kRestHalvings = 4;       // of its last step
@@ -61,23 +61,16 @@ RestCell find_rest_cell(const FeedLimits& limits, const FeedCell& cell, bool is_
   const CellSample& rest = is_start ? cell.at.front() : cell.at.back();
   const auto is_within = [&](double jerk) {
     FeedUse use;
-    CellMotion motion;
     for (int k = 0; k <= FeedCell::kSteps; ++k) {
       const double x = h * k / FeedCell::kSteps;
       const double t = std::cbrt(6 * x / jerk);
       const double a = is_start ? jerk * t : -jerk * t;
-      const auto sample = static_cast<std::size_t>(is_start ? k : FeedCell::kSteps - k);
+      const int sample = is_start ? k : FeedCell::kSteps - k;
       const double v = 0.5 * jerk * t * t;
-      motion.v[sample] = v;
-      motion.a[sample] = a;
-      motion.j[sample] = jerk;
       add_use(limits, cell.at[sample], v, a, jerk, use);
       if (room == RestRoom::kLargest) add_use(without_rate, cell.at[sample], v, a, jerk, use);
     }
-    const auto keeps = [&](const FeedUse& of) {
-      return of.worst() < kRestShare * cell.tight && of.b < kRestShare;
-    };
-    return keeps(use) && keeps(use_of_motion(limits, cell, motion));  // between the samples too
+    return use.worst() < kRestShare * cell.tight && use.b < kRestShare;
   };
   // b = (j t²/2)² at t = (6h/j)^⅓ is (6h)^(4/3) j^(2/3) / 4.
   double jerk = std::pow(0.8 * std::max(max_b, kZeroDerivative), 1.5) / (36 * h * h);

@@ -78,12 +78,10 @@ void RollingFeed::lower_beside_rests(double largest) noexcept {
   }
 }
 
-/// Whether what stands of the result is where jerk was linearised, or far from its limits there:
-/// again would gain nothing.
-bool RollingFeed::is_near_bar() const noexcept {
-  const bool is_last = grid_.is_complete() && new_.end == grid_.last();  // all of it stands
-  const int near = is_last ? new_.cells() : std::min(new_.cells(), settings_.max_commit_cells);
-  for (int k = 0; k < near; ++k) {
+/// Whether the result is, in its first `cells` cells, where jerk was linearised, or far from its
+/// limits there: again would gain nothing.
+bool RollingFeed::is_near_bar(int cells) const noexcept {
+  for (int k = 0; k < std::min(cells, new_.cells()); ++k) {
     const bool has_tangent = !std::isnan(bar_slopes_[k]);
     const double ratio = new_.b[k] / bar_knots_[k];
     if (has_tangent && std::abs(ratio - 1) <= kNearBar) continue;

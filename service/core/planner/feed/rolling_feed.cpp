@@ -14,18 +14,19 @@ constexpr double kVelocityShare = 0.9999;
 constexpr double kAccelShare = 0.999;
 constexpr double kJerkShare = 0.998;
 /// Plans use that much less of the limits at the far end of a window, growing evenly: the tail of a
-/// plan is strictly inside the limits of the next one, which therefore has an interior.
+/// plan is strictly inside the limits of the next one, which therefore has an interior. Behind the
+/// last window of a path there is none.
 constexpr double kFunnel = 0.02;
 constexpr int kTightenings = 4;
 constexpr int kMinCells = 4;         // of a window
 constexpr int kRestReach = 11;       // cells beside a rest whose limits its speed keeps
 constexpr double kSlowShare = 1e-3;  // of u̇² at the rest's own bound: a cell within reach is slow
 constexpr double kBesideSlow = 0.25;  // of u̇² at that bound, beside a slow cell
-constexpr int kHistory = 240;         // cells kept behind the next one, at most: three windows and more
-constexpr int kSpare = 8;             // cells of the store
-constexpr int kTrials = 2;            // results far from it that tighten no cell
-constexpr double kJump = 0.03;        // of u̇², from cell to cell
-constexpr double kSure = 0.9;         // use by a cell's bounds: no closer look is needed
+constexpr int kHistory = 240;   // cells kept behind the next one, at most: three windows and more
+constexpr int kSpare = 8;       // cells of the store
+constexpr int kTrials = 2;      // results far from it that tighten no cell
+constexpr double kJump = 0.03;  // of u̇², from cell to cell
+constexpr double kSure = 0.9;   // use by a cell's bounds: no closer look is needed
 constexpr double kFeedSlack = 1.002;  // on u̇², beside CellSettings::feed_share
 
 /// u̇² beside a rest, of what the cells within reach keep up and what the cell at the rest does, as
@@ -200,12 +201,14 @@ double RollingFeed::stop_b(std::int64_t first, std::int64_t end) const noexcept 
 
 bool RollingFeed::refine() noexcept {
   const int cells = new_.cells();
+  const bool is_last = grid_.is_complete() && new_.end == grid_.last();
+  const double funnel = is_last ? 0 : kFunnel;
   const int wanted = settings_.refinements + (is_at_rest_ ? settings_.more_from_rest : 0);
   int good = 0, trials = 0;
   for (int round = 0; round < kTightenings + wanted; ++round) {
     for (int k = 0; k <= cells; ++k) {
-      const double funnel = 1 - kFunnel * std::min(1.0, 1.0 * k / settings_.window_cells);
-      accel_share_[k] = jerk_share_[k] = funnel * grid_[new_.first + k].tight;
+      const double share = 1 - funnel * std::min(1.0, 1.0 * k / settings_.window_cells);
+      accel_share_[k] = jerk_share_[k] = share * grid_[new_.first + k].tight;
     }
     if (window_rounds_ >= settings_.max_rounds) break;
     ++count_.solves;
@@ -225,17 +228,20 @@ bool RollingFeed::refine() noexcept {
     take_result();
     const bool is_good = check();
     // Far from a tangent a result may break a limit, and no cell is at fault; without one it is.
-    const bool is_far = !is_near_bar(), has_tangent = !std::isnan(bar_slopes_[0]);
+    const bool is_far = !is_near_bar(settings_.max_commit_cells),
+               has_tangent = !std::isnan(bar_slopes_[0]);
     const bool is_trial = is_far && has_tangent && good == 0 && ++trials <= kTrials;
     if (!is_good && !is_trial && round < kTightenings) tighten();
-    if (is_far && (is_good || has_tangent)) linearise_at_result();
+    // Of the last window all cells stand.
+    const bool has_more = is_far || (is_good && is_last && !is_near_bar(cells));
+    if (has_more && (is_good || has_tangent)) linearise_at_result();
     if (!is_good) {
       if (!is_trial) ++count_.tightened;
       continue;
     }
     std::swap(best_.b, new_.b);
     std::swap(best_.slope, new_.slope);
-    if (++good == wanted || !is_far) break;
+    if (++good == wanted || !has_more) break;
   }
   if (good == 0) return false;
   std::swap(best_.b, new_.b);

@@ -23,10 +23,10 @@ struct FeedSettings {
   int commit_cells = 40;      ///< of them kept, at least
   int max_commit_cells = 60;  ///< kept where braking to that rest begins farther on
   int max_rounds = 240;       ///< of the solver per window; then the plan before it stands
-  /// Convex programmes per window at most, each around the result of the last. There is a second
-  /// one where the first leads away from the plan of the window before, around which it was made.
-  int refinements = 2;
-  int more_from_rest = 2;  ///< of them, where there is no plan before
+  /// Convex programmes per window at most, each around the result of the last. There is another
+  /// one where the last leads away from the plan around which it was made.
+  int refinements = 3;
+  int more_from_rest = 1;  ///< of them, where there is no plan before
   /// Share of the windows that are declared to have no plan: for tests of what then happens.
   double failing_share = 0;
 };
@@ -151,7 +151,7 @@ class RollingFeed {
   [[nodiscard]] std::size_t find_tail(std::int64_t first, int& kept) const noexcept;
   void commit(bool is_new) noexcept;
   void commit_crawl() noexcept;
-  [[nodiscard]] bool is_near_bar() const noexcept;
+  [[nodiscard]] bool is_near_bar(int cells) const noexcept;
   void linearise_at_result() noexcept;
   [[nodiscard]] bool is_failing() const noexcept;
   [[nodiscard]] std::int64_t window_end() const noexcept;

@@ -37,7 +37,8 @@ JointSpan straight(double x, double length) {
 /// leave room for.
 struct Ended : StraightGrid {
   explicit Ended(int kept_cells = 512, const MachineModel& m = bench_machine())
-      : StraightGrid(m, {0.004, 1, kept_cells}), second(straight(50, 50)) {
+      : StraightGrid(m, {.cell_s = 0.004, .feed_share = 1, .kept_cells = kept_cells}),
+        second(straight(50, 50)) {
     const ToolPose from = pose_on(straight(0, 50).band.c, 0.0);
     grid.begin(solve(model, model.tool_length_mm, from, 0, JointVector{}).q, model.tool_length_mm);
     for (const JointSpan& joint_span : {straight(0, 50), second}) {

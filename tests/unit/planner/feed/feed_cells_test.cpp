@@ -47,7 +47,7 @@ TEST(CellGrid, BeginsASpanWhereItsPathIsSaidToBegin) {
 TEST(CellGrid, ACellTakesAboutTheTimeThatSettingsSay) {
   for (const double feed : {20.0, 100.0, 1000.0}) {
     for (const double cell_s : {0.004, 0.01}) {
-      StraightGrid g(bench_machine(), {cell_s, 0.9, 512});
+      StraightGrid g(bench_machine(), {.cell_s = cell_s, .rest_s = 1, .feed_share = 0.9});
       FeedSpan span = g.next(30);
       span.u_speed_mm_per_s = feed;
       ASSERT_FALSE(is_fault(g.grid.push(span)));
@@ -64,7 +64,8 @@ TEST(CellGrid, ACellTakesAboutTheTimeThatSettingsSay) {
 }
 
 TEST(CellGrid, AsksForTheTimeOfThePartOfThePathThatASpanCovers) {
-  StraightGrid g;  // 60 mm of line, the first 10 of which are well off the pole, the last beside it
+  // 60 mm of line, the first 10 of which are well off the pole, the last beside it
+  StraightGrid g(bench_machine(), {.rest_s = 1});
   const auto pose = [](double x, double tilt) {
     return ToolPose{Vector3(x, 10, -20), Vector3(std::sin(tilt), 0, std::cos(tilt))};
   };
@@ -80,6 +81,34 @@ TEST(CellGrid, AsksForTheTimeOfThePartOfThePathThatASpanCovers) {
   ASSERT_FALSE(is_fault(g.grid.finish()));
   const double seconds = 10 / (10 * 0.9985);
   EXPECT_EQ(g.grid.last(), std::ceil(seconds / 0.004));
+}
+
+TEST(CellGrid, CellsGrowFromTheRestsAtBothEndsOfAPath) {
+  for (const int spans : {1, 6}) {
+    StraightGrid g(bench_machine(), {.rest_s = 0.007, .feed_share = 1});
+    std::vector<double> lengths(static_cast<std::size_t>(spans), 60.0 / spans);
+    for (const double length : lengths) {
+      FeedSpan span = g.next(length);
+      span.u_speed_mm_per_s = 100;
+      ASSERT_FALSE(is_fault(g.grid.push(span)));
+    }
+    ASSERT_FALSE(is_fault(g.grid.finish()));
+    g.expect_gapless(lengths);
+    const double d1 = std::abs(g.grid[0].at[0].d1[0]);
+    const double first = g.limits.full_jerk[0] / d1 * std::pow(0.007, 3) / 6;
+    const std::int64_t last = g.grid.last() - 1;
+    EXPECT_LE(g.grid[0].h, first) << "what the joint comes in 7 ms";
+    EXPECT_GT(g.grid[0].h, 0.5 * first);
+    EXPECT_NEAR(g.grid[last].h, g.grid[0].h, 0.3 * first);
+    double behind = 0, ahead = 0;
+    for (std::int64_t k = 0; k <= last; ++k) {
+      EXPECT_LE(g.grid[k].h, std::max(first, 0.15 * behind) + 1e-12) << k;
+      EXPECT_LE(g.grid[last - k].h, std::max(first, 0.15 * ahead) + 1e-12) << k;
+      behind += g.grid[k].h;
+      ahead += g.grid[last - k].h;
+    }
+    EXPECT_GT(g.grid[last / 2].h, 10 * first) << "and at full speed they are as long as ever";
+  }
 }
 
 TEST(CellGrid, NoCellIsMuchLongerThanItsNeighbour) {
