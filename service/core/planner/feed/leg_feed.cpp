@@ -14,9 +14,12 @@ constexpr double kMinLegCells = CellGrid::kMin, kMaxFeedCells = 360;  // cells a
 constexpr double kCellGrowth = 1.25;                                  // of cells, away from rest
 constexpr std::size_t kMaxGrowing = 64;                               // of them, next to a rest
 constexpr std::size_t kEnds = 512;
-constexpr int kKeptCells = 256;   // at a time: a window, and what stands before and behind it
-constexpr int kCommitCells = 80;  // of a window: all cells are there, so fewer windows do
-constexpr int kMaxRounds = 80;    // of the solver in a window: what needs more finds no plan
+constexpr double kRest_s = 0.007;     // that the first and the last cell take, about
+constexpr double kRestGrowth = 0.15;  // of the distance to the rest: no cell is longer
+constexpr double kMinRest_mm = 2e-3;  // the first and the last are no shorter
+constexpr int kKeptCells = 256;       // at a time: a window, and what stands before and behind it
+constexpr int kCommitCells = 80;      // of a window: all cells are there, so fewer windows do
+constexpr int kMaxRounds = 80;        // of the solver in a window: what needs more finds no plan
 
 FeedSettings leg_settings(const MachineModel& model) noexcept {
   FeedSettings settings = feed_settings(model);
@@ -25,6 +28,30 @@ FeedSettings leg_settings(const MachineModel& model) noexcept {
   settings.cells.kept_cells = kKeptCells;
   settings.max_rounds = kMaxRounds;
   return settings;
+}
+
+/// Into `finer`: the ends of cells `ends`, ascending, and between them those of cells that are no
+/// longer than `first`, or a share of their distance to the rest at 0.
+void grade_from_rest(std::span<const double> ends, double first, std::vector<double>& finer) {
+  finer.clear();
+  double x = 0;
+  for (std::size_t n = 0; n < ends.size(); ++n) {
+    for (;;) {
+      const double h = ends[n] - x, longest = std::max(first, kRestGrowth * x);
+      if (!(h > longest) || finer.size() + (ends.size() - n) >= kEnds) break;
+      finer.push_back(x += h / std::ceil(h / longest));
+      if (!(x < ends[n])) break;
+    }
+    if (finer.empty() || finer.back() < ends[n]) finer.push_back(ends[n]);
+    x = ends[n];
+  }
+}
+
+/// Ends of cells that come from the other end of a path of `length`.
+void turn_round(std::vector<double>& ends, double length) noexcept {
+  std::reverse(ends.begin(), ends.end());
+  for (std::size_t n = 0; n + 1 < ends.size(); ++n) ends[n] = length - ends[n + 1];
+  ends.back() = length;
 }
 
 /// About the time of the fastest motion over `length` inside `limits` that leaves the rate filter
@@ -43,7 +70,8 @@ double duration_with_room(double length, const PathLimits& limits) noexcept {
 
 LegFeed::LegFeed(const MachineModel& model)
     : model_(model), feed_(model, leg_settings(model)), stop_margin_(model) {
-  ends_.reserve(kEnds);
+  ends_.reserve(kEnds + 1);
+  finer_.reserve(kEnds + 1);
 }
 
 double LegFeed::plan(const Leg& leg, std::span<const JointCell> cells, double less_than_s,
@@ -107,6 +135,20 @@ void LegFeed::set_cells(const Leg& leg, std::span<const JointCell> cells) noexce
   }
   ends_.resize(std::min(next + 1, ends_.size()));
   ends_.back() = leg.path.length;
+  for (const JointCell* rest : {&cells.front(), &cells.back()}) {
+    grade_from_rest(ends_, length_from_rest(*rest), finer_);
+    ends_.swap(finer_);
+    turn_round(ends_, leg.path.length);
+  }
+}
+
+double LegFeed::length_from_rest(const JointCell& rest) const noexcept {
+  const FeedLimits& limits = feed_.limits();
+  double per_jerk = 0;
+  for (int i = 0; i < limits.count; ++i) {
+    per_jerk = std::max(per_jerk, rest.d1[i] / limits.jerk[i]);
+  }
+  return std::max(kMinRest_mm, kRest_s * kRest_s * kRest_s / (6 * per_jerk));
 }
 
 bool LegFeed::push_cells(const Leg& leg, Times& times, Staging& out) noexcept {

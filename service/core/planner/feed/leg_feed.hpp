@@ -40,6 +40,8 @@ class LegFeed {
   };
 
   /// Places the ends of cells on the leg; there is at least one cell.
+  /// How far the machine comes from a rest in the time of a first cell.
+  [[nodiscard]] double length_from_rest(const JointCell& rest) const noexcept;
   void set_cells(const Leg& leg, std::span<const JointCell> cells) noexcept;
   [[nodiscard]] double time_over(const Leg& leg, const JointCell& cell) const noexcept;
   /// Pushes all cells, and stages the windows that make room for them.
@@ -51,7 +53,7 @@ class LegFeed {
   const MachineModel& model_;
   RollingFeed feed_;
   FeedStopMargin stop_margin_;
-  std::vector<double> ends_;  ///< of the cells, by path length
+  std::vector<double> ends_, finer_;  ///< of the cells, by path length
 };
 
 /// A time that no motion on a leg with such `cells` falls much below: `caps` where they are

@@ -24,6 +24,12 @@ Rolled rolled(const FeedSettings& settings, std::initializer_list<Block> blocks)
   return one;
 }
 
+/// Cells as they are away from rests, at the ends of the path too.
+FeedSettings evenly(FeedSettings settings) {
+  settings.cells.rest_s = 1;
+  return settings;
+}
+
 /// The first cell of a block.
 std::int64_t begin_of(const Rolled& one, std::uint64_t block) {
   const auto pieces = one.pieces();
@@ -34,7 +40,7 @@ std::int64_t begin_of(const Rolled& one, std::uint64_t block) {
 
 TEST(FeedJump, AWindowWithoutAPlanOverASlowBlockEndsBehindIt) {
   const Rolled one =
-      rolled(feed_settings(bench_machine()), {{0.142, 80}, {0.19, 0.691}, {2.585, 80}});
+      rolled(evenly(feed_settings(bench_machine())), {{0.142, 80}, {0.19, 0.691}, {2.585, 80}});
   EXPECT_EQ(one.windows.front().rest_cell, begin_of(one, 2));
   EXPECT_LT(one.feed.grid().last(), 120) << "there was room for all of it";
   expect_joined(one.pieces());
@@ -57,7 +63,7 @@ TEST(FeedJump, EndingThereSavesTheTimeOfSofterPlans) {
 }
 
 TEST(FeedJump, IsNoEndWhereAPlanLeadsOverIt) {
-  const Rolled one = rolled(without_reserve(), {{10, 80}, {3, 8}, {60, 80}});
+  const Rolled one = rolled(evenly(without_reserve()), {{10, 80}, {3, 8}, {60, 80}});
   for (const RolledWindow& window : one.windows) {
     EXPECT_NE(window.rest_cell, begin_of(one, 1));
     EXPECT_NE(window.rest_cell, begin_of(one, 2));

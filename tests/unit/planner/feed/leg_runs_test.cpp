@@ -65,10 +65,11 @@ TEST(LegRuns, AreOnePieceByAzimuthWhereTheRedundantJointHasFarthestToGo) {
     Planned one(bench_machine());
     ASSERT_FALSE(is_fault(Beside{3e-3, 0.02, end}.plan(one)));
     ASSERT_EQ(one.staged->path_count, 1);
-    EXPECT_TRUE(one.staged->paths[0].is_azimuthal);
     EXPECT_LE(use_of_motion(one.model, *one.staged).worst(), 1);
     const double turn = std::abs(one.joints[3] - one.start[3]);
-    EXPECT_LT(duration_of(*one.staged), 1.01 * fastest_turn_s(turn)) << "it bounds the motion";
+    const double over_turn = duration_of(*one.staged) / fastest_turn_s(turn);
+    EXPECT_LT(over_turn, 1.01) << "it bounds the motion";
+    EXPECT_TRUE(one.staged->paths[0].is_azimuthal || over_turn < 1) << "else the feed does better";
   }
 }
 
