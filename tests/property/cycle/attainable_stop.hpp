@@ -150,7 +150,7 @@ class AttainableStop {
 
   /// The fastest landing in the last cell.
   [[nodiscard]] RestCell landing() const {
-    constexpr double kAll = 1 / 0.98, kFree = 1e12;  // find_rest_cell() leaves some of the limits
+    constexpr double kAll = 1 / 0.92, kFree = 1e12;  // find_rest_cell() leaves some of the limits
     return find_rest_cell(limits_.scaled(kAll, kAll, kAll), cells_.grid()[kCells], false, kFree);
   }
 

@@ -60,6 +60,7 @@ void CellGrid::begin(const JointVector& joints, double tool_length_mm) noexcept 
   next_span_ = 0;
   first_ = last_ = 0;
   last_h_ = 0;
+  added_at_begin_ = 0;
   joints_ = joints;
   tool_length_mm_ = tool_length_mm;
   is_finished_ = is_begin_graded_ = false;

@@ -119,6 +119,9 @@ class CellGrid {
   /// Largest u̇² at the boundary before `cell`: what the cells on both sides allow.
   [[nodiscard]] double max_b_at(std::int64_t cell) const noexcept;
 
+  /// Cells that the begin of the path has more of because they are graded there.
+  [[nodiscard]] std::int64_t added_at_begin() const noexcept { return added_at_begin_; }
+
   /// Joints at the end of the last cell.
   [[nodiscard]] const JointVector& joints() const noexcept { return joints_; }
 
@@ -165,7 +168,7 @@ class CellGrid {
   int waiting_count_ = 0;
   std::vector<Draft> drafts_, finer_;
   std::uint64_t next_span_ = 0;  ///< number of waiting_[0]
-  std::int64_t first_ = 0, last_ = 0;
+  std::int64_t first_ = 0, last_ = 0, added_at_begin_ = 0;
   double last_h_ = 0;  ///< length of the last cell made
   JointVector joints_{};
   double tool_length_mm_ = 0;

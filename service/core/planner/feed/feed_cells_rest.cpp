@@ -60,6 +60,7 @@ void CellGrid::grade_begin() noexcept {
   for (std::size_t n = 0; n < drafts_.size(); ++n) {
     draft_from_rest(drafts_[n], first, false, drafts_.size() - n, from_rest);
   }
+  added_at_begin_ = static_cast<std::int64_t>(finer_.size() - drafts_.size());
   drafts_.swap(finer_);
 }
 

@@ -86,6 +86,13 @@ std::int64_t RollingFeed::window_end() const noexcept {
   return grid_.is_complete() ? std::min(end, grid_.last()) : end;
 }
 
+/// Cells that have to be there before the next window is planned. At the begin of a path they are
+/// graded: there have to be as many more, so that a fault on the path is known as early as ever.
+std::int64_t RollingFeed::cells_needed() const noexcept {
+  const bool is_begin = next_ == 0 && !grid_.is_complete();
+  return window_end() + (is_begin ? grid_.added_at_begin() : 0);
+}
+
 bool RollingFeed::is_failing() const noexcept {
   auto hash = static_cast<std::uint32_t>(count_.windows) * 2654435761U;
   hash ^= hash >> 15U;
@@ -105,7 +112,7 @@ void RollingFeed::resume_from(std::int64_t cell) noexcept {
 bool RollingFeed::try_plan() noexcept {
   grid_.drop_before(next_ - history_);
   (void)grid_.make_cells();  // fault() tells
-  if (is_done() || grid_.last() < window_end()) return false;
+  if (is_done() || grid_.last() < cells_needed()) return false;
   ++count_.windows;
   window_rounds_ = 0;
   if (!is_failing() && plan_window()) {

@@ -155,6 +155,7 @@ class RollingFeed {
   void linearise_at_result() noexcept;
   [[nodiscard]] bool is_failing() const noexcept;
   [[nodiscard]] std::int64_t window_end() const noexcept;
+  [[nodiscard]] std::int64_t cells_needed() const noexcept;
 
   FeedSettings settings_;
   FeedLimits limits_;   ///< what plans are checked against

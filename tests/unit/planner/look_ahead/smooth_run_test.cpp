@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 #include <vector>
@@ -65,6 +66,13 @@ struct Ran {
   Status finish() {
     run.finish();
     return status = run.publish(writer);
+  }
+  /// The cycle is in the newest window: no tail is left that it could enter instead.
+  void begin_newest_window() {
+    const auto all = times();
+    if (all.empty()) return;
+    port->window_begun.store((std::uint64_t{1} << 63U) | (std::uint64_t{all.back().epoch} << 32U) |
+                             all.back().window);
   }
   [[nodiscard]] std::vector<TimePiece> times() const {
     std::vector<TimePiece> out;
@@ -135,7 +143,9 @@ TEST(SmoothRun, EndsWithTheJointsOfTheLastBlock) {
   one.cut_straight(3, 2);
   const ToolPose end{one.pose.tip, Vector3(0.28, 0.21, 1).normalized()};
   one.cut(end);
-  ASSERT_EQ(one.finish(), Status::kDone);
+  EXPECT_EQ(one.finish(), Status::kNoRoom) << "the cycle may still rest before";
+  one.begin_newest_window();
+  ASSERT_EQ(one.run.publish(one.writer), Status::kDone);
   const JointVector wanted = solve(one.model, one.model.tool_length_mm, end, 0, {}).q;
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(one.run.joints()[i], wanted[i], 1e-6) << i;
 }

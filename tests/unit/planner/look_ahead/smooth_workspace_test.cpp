@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -36,6 +37,16 @@ struct Planned {
     block.tip_mm = to_array(tip);
     block.axis = to_array(axis);
     last = planner.plan(block, writer);
+    if (last.status != PlanStatus::kNoRoom) return;
+    begin_newest_window();
+    last = planner.plan(block, writer);
+  }
+  /// The cycle is in the newest window: no tail is left that it could enter instead.
+  void begin_newest_window() {
+    const auto all = times();
+    if (all.empty()) return;
+    port->window_begun.store((std::uint64_t{1} << 63U) | (std::uint64_t{all.back().epoch} << 32U) |
+                             all.back().window);
   }
   void cut(const Vector3& by, const Vector3& to_axis) {
     ClBlock block;
