@@ -99,10 +99,10 @@ struct StopInProgress {
   StopMode mode = StopMode::kNone;
   StopKind kind = StopKind::kHold;
   StopLaw law;             ///< path length; off the path: seconds at the speed of the begin
-  double time = 0;         ///< since it or its law began
-  double passed = 0;       ///< path length of the path pieces left behind since it began
-  double rate_begin = 0;   ///< rate of plan time when it began, for the record
-  double speed_begin = 0;  ///< ṡ when it began
+  double time = 0;         ///< since it or its law was laid out
+  double passed = 0;       ///< path length of the path pieces left behind since then
+  double rate_begin = 0;   ///< rate of plan time then, for the record
+  double speed_begin = 0;  ///< ṡ then
   double stopping_time = 0, stopping_distance = 0;  ///< as laid out, for the report
   JointVector begin{};                              ///< joints when it began
   JointVector direction{};                          ///< off the path: joint velocity when it began

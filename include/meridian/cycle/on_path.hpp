@@ -13,8 +13,8 @@
 /// The place on the path: from path length to joints, from piece to piece. RT: cycle.
 namespace meridian {
 
-/// A cycle goes over at most that many time pieces; pieces are longer than a cycle, so this is a
-/// bound and not a rule.
+/// A period goes over at most that many time pieces. Those beside rests may be shorter than a
+/// period, hardly any elsewhere, so this is a bound and not a rule.
 inline constexpr int kMaxPieces = 64;
 
 /// A plan that is no faster rests: rounding of its end is 1e-12 of its speed.

@@ -110,6 +110,15 @@ inline void lay_out_stop(CycleState& state, const PathState& begin,
   return peak_of(begin, authority) <= kRounding * peak_of(plan, authority);
 }
 
+/// What a stop of `kind` may use from here where the machine may brake harder than plans do at any
+/// rate: on the law of another stop, or along the plan in a FaultStop.
+[[nodiscard]] inline StopMargin authority_where_it_brakes(const Cycle& c, StopKind kind) noexcept {
+  const TimePiece& piece = *c.reader.piece();
+  const PathState& here = c.state.on_path;
+  if (!(piece.slow_velocity > 0) || !(here.dds < 0)) return authority_of(piece, kind, here);
+  return authority_on_law(piece, kind, here, state_at(piece, c.state.piece_time));
+}
+
 /// Begins the stop from where and how the machine moves along its path; nothing moves: it is over
 /// at once. A stop that was going on is laid out anew with the authority of `kind`. Without
 /// authority it goes on as it was, or along the plan, for whose rate every plan leaves room, to the
@@ -125,7 +134,8 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
     const TimePiece& piece = *c.reader.piece();
     begin = c.state.on_path;
     if (!(begin.ds > 0)) begin = {state_at(piece, c.state.piece_time).s, 0, 0, 0};
-    authority = authority_of(piece, kind, begin);
+    const bool is_on_law = stop.mode == StopMode::kOnPath;
+    authority = is_on_law ? authority_where_it_brakes(c, kind) : authority_of(piece, kind, begin);
     authority = {authority.accel * share, authority.jerk * share};
     if (kind == StopKind::kHold && passes_block_end(c, begin, authority)) authority = {};
     if (!is_rise_planned(c, begin, authority)) authority = {};
@@ -278,10 +288,11 @@ inline void end_stop_here(CycleState& state) noexcept {
   const bool is_beside = stop.time < stop.deviation_time;
   if (!is_on_move(c) || is_beside || !(c.state.on_path.ds > 0)) return {};
   const bool is_fault = stop.mode == StopMode::kFaultAlongPlan;
-  const StopKind kind = is_fault ? StopKind::kFault : StopKind::kHold;
-  const StopMargin authority = authority_of(*c.reader.piece(), kind, c.state.on_path);
+  const TimePiece& piece = *c.reader.piece();
+  const StopMargin authority = is_fault ? authority_where_it_brakes(c, StopKind::kFault)
+                                        : authority_of(piece, StopKind::kHold, c.state.on_path);
   if (!(authority.jerk > 0)) return {};
-  if (is_fault && !is_reckoned_with(c, authority)) return {};
+  if (is_fault && !(piece.slow_velocity > 0) && !is_reckoned_with(c, authority)) return {};
   if (!is_fault && passes_block_end(c, c.state.on_path, authority)) return {};
   if (!is_rise_planned(c, c.state.on_path, authority)) return {};
   return authority;
@@ -309,7 +320,26 @@ inline void shorten_stop(Cycle& c) noexcept {
   stop.speed_begin = here.ds;
   stop.law = law;
   stop.time = stop.passed = stop.deviation_time = 0;
-  stop.begin = c.state.joints;
+}
+
+/// How far a stop by a law came in the periods of a cycle.
+enum class LawStep : std::uint8_t { kOnPath, kAtPathEnd, kLost };
+
+/// Goes on by the periods of this cycle, one after the other, as if none had been lost, bit for
+/// bit.
+[[nodiscard]] inline LawStep follow_law(Cycle& c) noexcept {
+  StopInProgress& stop = c.state.stop;
+  for (int n = 0; n < c.periods; ++n) {
+    shorten_stop(c);
+    stop.time += c.dt;
+    PathState p = stop.law.at(stop.time);
+    p.s -= stop.passed;
+    const bool is_inside = walk_to(c, p.s, stop.passed);
+    c.state.on_path = p;
+    if (!is_inside) return is_on_move(c) ? LawStep::kLost : LawStep::kAtPathEnd;
+    c.state.piece_time = time_at(*c.reader.piece(), p.s, c.state.piece_time + c.dt);
+  }
+  return LawStep::kOnPath;
 }
 
 /// Leaves the plan for a law of its own where there is authority for one by now.
@@ -357,9 +387,11 @@ inline void leave_plan(Cycle& c) noexcept {
   StopInProgress& stop = c.state.stop;
   if (is_along_plan(stop.mode)) leave_plan(c);
   if (is_along_plan(stop.mode)) return follow_stop_by_rate(c);
-  if (stop.mode == StopMode::kOnPath) shorten_stop(c);
-  for (int n = 0; n < c.periods; ++n) stop.time += c.dt;  // as if none had been lost, bit for bit
-  if (is_off_path(stop.mode)) {
+  const bool is_off = is_off_path(stop.mode);
+  if (is_off || !is_on_move(c)) {
+    for (int n = 0; n < c.periods; ++n) stop.time += c.dt;  // as if none had been lost, bit for bit
+  }
+  if (is_off) {
     put_off_path(c.state, c.machine.joint_count);
     add_deviation(c.state, c.machine.joint_count);
     return true;
@@ -370,18 +402,14 @@ inline void leave_plan(Cycle& c) noexcept {
     add_deviation(c.state, c.machine.joint_count);
     return true;
   }
-  PathState p = stop.law.at(stop.time);
-  p.s -= stop.passed;
-  const bool is_inside = walk_to(c, p.s, stop.passed);
-  c.state.on_path = p;
-  if (!is_inside) {
-    if (is_on_move(c)) return false;
+  const LawStep step = follow_law(c);
+  if (step == LawStep::kLost) return false;
+  if (step == LawStep::kAtPathEnd) {
     end_stop_here(c.state);
     add_deviation(c.state, c.machine.joint_count);
     return true;
   }
-  c.state.piece_time = time_at(*c.reader.piece(), p.s, c.state.piece_time + c.dt);
-  if (!put_on_path(c, p.s, p.ds)) return false;
+  if (!put_on_path(c, c.state.on_path.s, c.state.on_path.ds)) return false;
   add_deviation(c.state, c.machine.joint_count);
   return true;
 }

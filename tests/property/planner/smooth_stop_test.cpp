@@ -179,7 +179,7 @@ OnPlan draw_state(RandomPrograms& random, const Trace& trace, std::size_t piece)
 }
 
 struct Stops {
-  int count = 0, over = 0, shortened = 0;
+  int count = 0, over = 0, shortened = 0, taken_over = 0;
   double worst = 0, longest_wait = 0;
   std::vector<double> ratios;  ///< time over the least time
 
@@ -196,12 +196,23 @@ struct Stops {
   }
 };
 
+/// A FaultStop that takes a hold over where the machine is in `here` keeps its limits.
+void check_fault_stop(const MachineModel& model, const Trace& trace, std::size_t piece,
+                      const PathState& here, const PathState& plan, Stops& stops) {
+  const StopMargin margin = authority_on_law(trace.times[piece], StopKind::kFault, here, plan);
+  if (!(margin.jerk > 0)) return;
+  const double use = use_of(model, trace, piece, StopLaw(here, margin), StopKind::kFault);
+  stops.over += use > kLimit;
+  ++stops.taken_over;
+}
+
 /// Goes on with `law` from where the machine is, cycle by cycle, and lays it out anew as the cycle
 /// does where the piece that it has come to grants more. The time to rest.
 double follow_law(const MachineModel& model, const Trace& trace, std::size_t piece, StopLaw law,
                   StopKind kind, Stops& stops) {
   constexpr double kCycle_s = 1e-3;
   double passed = 0, time = 0, since = 0, plan_time = 0;
+  int cycles = 0;
   while (law.duration() - since > kCycle_s) {
     time += kCycle_s;
     since += kCycle_s;
@@ -217,7 +228,11 @@ double follow_law(const MachineModel& model, const Trace& trace, std::size_t pie
     }
     const TimePiece& now = trace.times[piece];
     plan_time = time_at(now, here.s, plan_time);
-    const StopMargin margin = authority_on_law(now, kind, here, state_at(now, plan_time));
+    const PathState plan = state_at(now, plan_time);
+    if (kind == StopKind::kHold && ++cycles % 16 == 5) {
+      check_fault_stop(model, trace, piece, here, plan, stops);
+    }
+    const StopMargin margin = authority_on_law(now, kind, here, plan);
     if (!(margin.jerk > 0)) continue;
     const StopLaw shorter(here, margin);
     if (!(shorter.duration() < law.duration() - since - kCycle_s)) continue;
@@ -274,6 +289,7 @@ void expect_stops_inside_limits(Transition transition) {
   faults.print("FaultStops");
   EXPECT_GT(holds.count, draws(100));
   EXPECT_GT(holds.shortened, draws(20));
+  EXPECT_GT(holds.taken_over, draws(100));
   EXPECT_EQ(holds.over, 0);
   EXPECT_EQ(faults.over, 0);
   EXPECT_LT(holds.longest_wait, 0.5);

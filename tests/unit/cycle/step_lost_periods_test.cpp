@@ -48,6 +48,34 @@ TEST(StepLostPeriods, AHoldGoesOnBitForBitToo) {
   EXPECT_EQ(gaps.world.now(), State::kHeld);
 }
 
+/// Its stop comes to more margin on its way, at a speed that lies between two cycles of the other.
+TEST(StepLostPeriods, AHoldThatIsLaidOutAnewGoesOnBitForBitToo) {
+  for (const double slow_velocity : {20.0, 30.0, 40.0, 50.0}) {
+    Program whole, gaps;
+    for (Program* p : {&whole, &gaps}) {
+      p->plan.cut({200, 0, 0}, kLimits);
+      p->run(0.6);
+      // A piece in force is written by the planner alone: of a test it may be written here.
+      auto& piece = const_cast<TimePiece&>(*p->world.reader.piece());
+      piece.stop_accel = 300;
+      piece.stop_jerk = 12'000;
+      piece.slow_velocity = slow_velocity;
+      piece.slow_stop_accel = 3000;
+      piece.slow_stop_jerk = 120'000;
+      p->world.command(Verb::kHold);
+    }
+    const double laid_out_s = whole.world.state.stop.stopping_time;
+    for (int n = 0; n < 150; ++n) {
+      for (int k = 0; k < 3; ++k) whole.world.run();
+      gaps.world.run(2);
+      ASSERT_EQ(gaps.world.records.back().joints, whole.world.records.back().joints) << n;
+    }
+    EXPECT_EQ(gaps.world.now(), State::kHeld);
+    const Event stopped = whole.world.last(EventCode::kStopped);
+    EXPECT_LT(static_cast<double>(stopped.a) * 1e-9, laid_out_s - 0.03) << "it ended sooner";
+  }
+}
+
 /// Where drives are after `lost` periods: they go on with the last velocity for the periods that
 /// they bridge, then ramp down.
 JointVector bridged(const Program& p, std::uint32_t lost, double decel_share) {

@@ -326,5 +326,33 @@ TEST(StopMotion, AFaultStopLeavesThePlanOnlyForALawThatSlowsDownSoAnyway) {
   EXPECT_FALSE(is_reckoned_at(50, -3100)) << "harder than the law ever is";
 }
 
+TEST(StopMotion, AFaultStopLeavesASmoothPlanThatIsSlowForWhatLiesBetweenRestAndItsSlowMargin) {
+  Cutting one;
+  auto& piece = const_cast<TimePiece&>(*one.world.reader.piece());
+  piece.slow_velocity = 40;
+  piece.slow_fault_accel = 3000;
+  piece.slow_fault_jerk = 120'000;
+  piece.rest_fault_accel = 9000;
+  piece.rest_fault_jerk = 900'000;
+  one.world.state.stop.mode = StopMode::kFaultAlongPlan;
+  one.world.state.on_path.ds = 2;
+  one.world.state.on_path.dds = -100;
+  EXPECT_GT(authority_to_leave_plan(one.cycle()).jerk, 200'000);
+  one.world.state.on_path.dds = -3100;
+  EXPECT_EQ(authority_to_leave_plan(one.cycle()).jerk, 0) << "harder than the margin lets it be";
+}
+
+TEST(StopMotion, AFaultStopKeepsTheLawOfAHoldThatBrakesLessThanItsPlanWould) {
+  Holding one;
+  auto& piece = const_cast<TimePiece&>(*one.world.reader.piece());
+  piece.slow_velocity = 1;
+  piece.a = -200'000;  // no stop from a state of such a plan bounds one from here
+  const double before = one.stop().stopping_time;
+  Cycle c = one.cycle();
+  begin_stop(c, StopKind::kFault);
+  EXPECT_EQ(one.stop().kind, StopKind::kFault);
+  EXPECT_EQ(one.stop().stopping_time, before);
+}
+
 }  // namespace
 }  // namespace meridian::test::stop_motion

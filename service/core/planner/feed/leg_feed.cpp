@@ -32,7 +32,8 @@ FeedSettings leg_settings(const MachineModel& model) noexcept {
 
 /// Into `finer`: the ends of cells `ends`, ascending, and between them those of cells that are no
 /// longer than `first`, or a share of their distance to the rest at 0.
-void grade_from_rest(std::span<const double> ends, double first, std::vector<double>& finer) {
+void grade_from_rest(std::span<const double> ends, double first,
+                     std::vector<double>& finer) noexcept {
   finer.clear();
   double x = 0;
   for (std::size_t n = 0; n < ends.size(); ++n) {

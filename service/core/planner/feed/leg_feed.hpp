@@ -18,7 +18,7 @@ namespace meridian {
 /// the joints along it.
 ///
 /// The cells of the feed are of equal time at full speed, and shorter towards both ends, where the
-/// motion is slower. However long a leg takes, there are no more of them than kMax and those.
+/// motion is slower. However long a leg takes, there are no more of them than its store holds.
 ///
 /// Fixed store; a pure function of the leg. Units: mm, rad, s. Context: planner thread. Source:
 /// docs/motion.md, section 4. Proof: tests/property/planner/leg_time_test.cpp.
@@ -39,9 +39,9 @@ class LegFeed {
     double less_than_s = 0, duration = 0;
   };
 
-  /// Places the ends of cells on the leg; there is at least one cell.
   /// How far the machine comes from a rest in the time of a first cell.
   [[nodiscard]] double length_from_rest(const JointCell& rest) const noexcept;
+  /// Places the ends of cells on the leg; there is at least one cell.
   void set_cells(const Leg& leg, std::span<const JointCell> cells) noexcept;
   [[nodiscard]] double time_over(const Leg& leg, const JointCell& cell) const noexcept;
   /// Pushes all cells, and stages the windows that make room for them.

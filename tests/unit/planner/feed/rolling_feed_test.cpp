@@ -253,5 +253,23 @@ TEST(RollingFeed, AFaultEndsThePathAndWhatIsBeforeIsStillPlanned) {
   EXPECT_LT(one.windows.back().committed.back().cell, one.feed.grid().last());
 }
 
+TEST(RollingFeed, WaitsAtTheBeginForAsManyMoreCellsAsGradingMadeThere) {
+  Rolled one;
+  one.add_straight(400, 0.5, 0);
+  one.begin();
+  const int window = FeedSettings{}.window_cells;
+  bool has_waited = false;
+  for (const FeedSpan& span : one.spans) {
+    ASSERT_FALSE(is_fault(one.feed.push(span)));
+    const CellGrid& grid = one.feed.grid();
+    const bool is_planned = one.feed.try_plan();
+    EXPECT_EQ(is_planned, grid.last() >= window + grid.added_at_begin());
+    has_waited = has_waited || (!is_planned && grid.last() >= window);
+    if (is_planned) break;
+  }
+  EXPECT_GT(one.feed.grid().added_at_begin(), 10);
+  EXPECT_TRUE(has_waited);
+}
+
 }  // namespace
 }  // namespace meridian::test::rolling_feed
