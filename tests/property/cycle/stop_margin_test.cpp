@@ -80,6 +80,55 @@ TEST(StopMargin, KeepsEveryJointBetweenRestAndThePlannedSpeed) {
   EXPECT_GT(used, test::draws(100));
 }
 
+/// Of a smooth plan: a cell ahead has limits that the stop from the slow speed just keeps there, by
+/// its own speed in it. Every slower stop keeps them too, however far ahead the cell is.
+TEST(StopMargin, OfASmoothPlanKeepsTheLimitsOfEveryCellAheadBetweenRestAndTheSlowSpeed) {
+  std::cout << "seed " << kSeed + 1 << ", " << kDraws << " draws\n";
+  std::mt19937_64 draw(kSeed + 1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int used = 0;
+  for (int n = 0; n < kDraws; ++n) {
+    TimePiece piece;
+    const double v1 = piece.slow_velocity = 100 * unit(draw) + 1;
+    piece.slow_stop_jerk = 1e4 * std::pow(30, unit(draw));
+    const double deepest = std::sqrt(piece.slow_stop_jerk * v1);
+    piece.slow_stop_accel = deepest * (0.3 + unit(draw));
+    const StopMargin slow{piece.slow_stop_accel, piece.slow_stop_jerk};
+    const double a1 = -0.9 * std::min(slow.accel, deepest) * unit(draw);
+    const StopLaw fast({0, v1, a1, 0}, slow);
+    const PathState in_cell = fast.at(fast.duration() * unit(draw));
+    const double peak = v1 + 0.5 * a1 * a1 / slow.jerk, u = in_cell.ds;
+    const double product =
+        std::min(largest_stop_product(peak, slow.accel, slow.jerk), u * slow.accel);
+    std::array<Row, 5> rows;
+    piece.rest_stop_accel = piece.rest_stop_jerk = 1e12;
+    for (Row& r : rows) {
+      r = {std::pow(10, -3 + 4 * unit(draw)), std::pow(10, -3 + 4 * unit(draw)),
+           std::pow(10, -4 + 4 * unit(draw)), 0, 0};
+      r.accel = r.d1 * slow.accel + r.d2 * u * u;
+      r.jerk = r.d1 * slow.jerk + 3 * r.d2 * product + r.d3 * u * u * u;
+      piece.rest_stop_accel = std::min(piece.rest_stop_accel, r.accel / r.d1);
+      piece.rest_stop_jerk = std::min(piece.rest_stop_jerk, r.jerk / r.d1);
+    }
+    const double x = unit(draw);
+    const PathState begin{0, x * v1, x * x * a1, 0};
+    const StopMargin got = authority_of(piece, StopKind::kHold, begin);
+    const StopLaw law(begin, got);
+    for (int k = 0; k <= 100; ++k) {
+      const PathState at = law.at(law.duration() * k / 100);
+      if (at.s < in_cell.s) continue;
+      const double v = at.ds, depth = std::abs(at.dds);
+      for (const Row& r : rows) {
+        ASSERT_LE(r.d1 * depth + r.d2 * v * v, r.accel * (1 + 1e-9)) << n << " at " << x;
+        ASSERT_LE(r.d1 * got.jerk + 3 * r.d2 * v * depth + r.d3 * v * v * v, r.jerk * (1 + 1e-9))
+            << n << " at " << x;
+      }
+    }
+    used += got.jerk > 1.01 * slow.jerk;
+  }
+  EXPECT_GT(used, test::draws(1000));
+}
+
 TEST(StopMargin, IsWhatThePlanSaysAtThePlannedSpeedOrWhereNothingIsKnown) {
   TimePiece piece;
   piece.stop_accel = 100;

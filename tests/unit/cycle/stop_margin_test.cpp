@@ -84,20 +84,17 @@ TEST(StopMarginOfAState, LiesBetweenThoseAtRestAndTheSlowOneOfASmoothPlan) {
   piece.rest_stop_accel = 900;
   piece.rest_stop_jerk = 27000;
   const auto at = [&](double v) { return authority_of(piece, StopKind::kHold, {0, v, 0, 0}); };
-  const auto expected = [](double v) {
-    const double x = v / 10, used = std::sqrt(27000 * v);
-    const double accel = std::min((1 - x) * 900 + x * 300, used);
-    const double product = largest_stop_product(v, accel, 27000);
-    const double y = std::max({product / largest_stop_product(10, 300, 3000), x, x * accel / 300});
-    return y <= 1 ? StopMargin{accel, (1 - y) * 27000 + y * 3000} : StopMargin{300, 3000};
-  };
-  bool is_between = false;
-  for (const double v : {0.01, 0.3, 1.0, 2.0, 4.0, 9.0}) {
-    expect_margin(at(v), expected(v).accel, expected(v).jerk);
-    is_between = is_between || (at(v).jerk > 3100 && at(v).jerk < 26000);
+  EXPECT_NEAR(at(1e-6).jerk, 27000, 1) << "next to rest";
+  double last = 27000;
+  for (const double v : {0.01, 0.1, 0.3, 0.6, 1.0, 2.0, 4.0, 9.0}) {
+    EXPECT_LE(at(v).jerk, last) << v;
+    EXPECT_GE(at(v).jerk, 3000) << v;
+    EXPECT_LE(at(v).accel, 900) << v;
+    last = at(v).jerk;
   }
-  EXPECT_TRUE(is_between);
-  EXPECT_NEAR(at(1e-6).jerk, 27000, 1);
+  EXPECT_GT(at(0.1).jerk, 20000);
+  EXPECT_LT(at(4.0).jerk, 20000);
+  EXPECT_GT(at(4.0).jerk, 3300);
   expect_margin(at(10), 300, 3000);
   piece.rest_stop_jerk = 2999;
   expect_margin(at(0.3), 300, 3000);

@@ -57,6 +57,9 @@ class CellGrid {
  public:
   static constexpr int kAhead = 4;  ///< spans that bound the cells of the one before them
   static constexpr int kMin = 40;   ///< cells of a path, however short
+  /// Beside a rest no cell is longer than that share of its distance to it, but for the first,
+  /// which is no shorter than that: below, motion would creep.
+  static constexpr double kRestGrowth = 0.15, kMinRest_mm = 2e-3;
 
   CellGrid(const MachineModel& model, const FeedLimits& limits, const CellSettings& settings);
 

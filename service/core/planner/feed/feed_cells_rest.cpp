@@ -8,12 +8,6 @@
 /// Cells beside the rests at both ends of a path. There the machine is slow: a cell that takes
 /// 4 ms at full speed takes ten times as long, under one jerk that its worst sample bounds.
 namespace meridian {
-namespace {
-
-constexpr double kRestGrowth = 0.15;  // of the distance to the rest: no cell is longer
-constexpr double kMinRest_mm = 2e-3;  // of u: below, motion would creep
-
-}  // namespace
 
 double CellGrid::length_from_rest(const FeedSpan& span, double x) const noexcept {
   JointVector reference = joints_;

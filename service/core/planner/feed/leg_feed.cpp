@@ -14,12 +14,9 @@ constexpr double kMinLegCells = CellGrid::kMin, kMaxFeedCells = 360;  // cells a
 constexpr double kCellGrowth = 1.25;                                  // of cells, away from rest
 constexpr std::size_t kMaxGrowing = 64;                               // of them, next to a rest
 constexpr std::size_t kEnds = 512;
-constexpr double kRest_s = 0.007;     // that the first and the last cell take, about
-constexpr double kRestGrowth = 0.15;  // of the distance to the rest: no cell is longer
-constexpr double kMinRest_mm = 2e-3;  // the first and the last are no shorter
-constexpr int kKeptCells = 256;       // at a time: a window, and what stands before and behind it
-constexpr int kCommitCells = 80;      // of a window: all cells are there, so fewer windows do
-constexpr int kMaxRounds = 80;        // of the solver in a window: what needs more finds no plan
+constexpr int kKeptCells = 256;   // at a time: a window, and what stands before and behind it
+constexpr int kCommitCells = 80;  // of a window: all cells are there, so fewer windows do
+constexpr int kMaxRounds = 80;    // of the solver in a window: what needs more finds no plan
 
 FeedSettings leg_settings(const MachineModel& model) noexcept {
   FeedSettings settings = feed_settings(model);
@@ -38,7 +35,7 @@ void grade_from_rest(std::span<const double> ends, double first,
   double x = 0;
   for (std::size_t n = 0; n < ends.size(); ++n) {
     for (;;) {
-      const double h = ends[n] - x, longest = std::max(first, kRestGrowth * x);
+      const double h = ends[n] - x, longest = std::max(first, CellGrid::kRestGrowth * x);
       if (!(h > longest) || finer.size() + (ends.size() - n) >= kEnds) break;
       finer.push_back(x += h / std::ceil(h / longest));
       if (!(x < ends[n])) break;
@@ -149,7 +146,8 @@ double LegFeed::length_from_rest(const JointCell& rest) const noexcept {
   for (int i = 0; i < limits.count; ++i) {
     per_jerk = std::max(per_jerk, rest.d1[i] / limits.jerk[i]);
   }
-  return std::max(kMinRest_mm, kRest_s * kRest_s * kRest_s / (6 * per_jerk));
+  constexpr double kRest_s = CellSettings{}.rest_s;
+  return std::max(CellGrid::kMinRest_mm, kRest_s * kRest_s * kRest_s / (6 * per_jerk));
 }
 
 bool LegFeed::push_cells(const Leg& leg, Times& times, Staging& out) noexcept {

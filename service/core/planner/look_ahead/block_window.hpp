@@ -14,8 +14,8 @@
 
 namespace meridian {
 
-/// The blocks of a program about the one that is planned next, and what they tell of routes behind
-/// the pole.
+/// The blocks of a program about the one that is planned next, and what follows from them for
+/// routes behind the pole.
 ///
 ///      planned, the last kKept        wait, at most kWaiting
 ///     ├────────────────────────────┼───────────────────────────┤

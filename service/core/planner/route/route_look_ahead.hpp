@@ -10,7 +10,7 @@
 
 namespace meridian {
 
-/// How many blocks each of some routes on carries, told block by block, for who waits for them: as
+/// How many blocks each of some routes on carries, found block by block, for who waits for them: as
 /// long as no joint and no drive of a stage is outside its travel (RouteFollower follows each
 /// branch). The machine has a redundant joint. Bounded by the blocks, no memory. Units: mm, rad, s.
 class RouteLookAhead {

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/time_law.hpp"
 #include "support/machines.hpp"
+#include "unit/planner/look_ahead/published.hpp"
 
 namespace meridian::test::smooth_run {
 namespace {
@@ -36,7 +35,7 @@ ClBlock cut_to(const ToolPose& end, std::uint64_t sequence, double feed = 50) {
 }
 
 /// A run of blocks from kBegin on, and what it published.
-struct Ran {
+struct Ran : Published {
   explicit Ran(const MachineModel& m = bench_machine(), const ToolPose& from = kBegin)
       : model(m), pose(from) {
     raise.begin(model.tool_length_mm);
@@ -67,29 +66,10 @@ struct Ran {
     run.finish();
     return status = run.publish(writer);
   }
-  /// The cycle is in the newest window: no tail is left that it could enter instead.
-  void begin_newest_window() {
-    const auto all = times();
-    if (all.empty()) return;
-    port->window_begun.store((std::uint64_t{1} << 63U) | (std::uint64_t{all.back().epoch} << 32U) |
-                             all.back().window);
-  }
-  [[nodiscard]] std::vector<TimePiece> times() const {
-    std::vector<TimePiece> out;
-    while (const TimePiece* piece = port->times.peek(out.size())) out.push_back(*piece);
-    return out;
-  }
-  [[nodiscard]] std::vector<PathPiece> paths() const {
-    std::vector<PathPiece> out;
-    while (const PathPiece* piece = port->paths.peek(out.size())) out.push_back(*piece);
-    return out;
-  }
 
   MachineModel model;
   FeedRaise raise{model};
   SmoothRun run{model, raise};
-  std::unique_ptr<MotionPort> port = std::make_unique<MotionPort>();
-  MotionWriter writer{*port};
   MotionReader reader{*port};
   RunStart start;
   ToolPose pose;

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "meridian/kinematics/kinematics.hpp"
@@ -15,6 +13,7 @@
 #include "meridian/planner/time_law.hpp"
 #include "support/family_machines.hpp"
 #include "support/machines.hpp"
+#include "unit/planner/look_ahead/published.hpp"
 
 /// How runs through blocks and motion from rest to rest take turns.
 namespace meridian::test::smooth_workspace {
@@ -23,7 +22,7 @@ namespace {
 const Vector3 kTilted(std::sin(0.3), 0, std::cos(0.3));
 
 /// A program that begins at rest in the first pose, and what is published of it.
-struct Planned {
+struct Planned : Published {
   explicit Planned(const SmoothSettings& settings = {Transition::kSmooth, 0, 0},
                    const Vector3& begin_axis = kTilted, const MachineModel& m = bench_machine())
       : model(m), tip(0, 0, 0), axis(begin_axis) {
@@ -41,13 +40,6 @@ struct Planned {
     begin_newest_window();
     last = planner.plan(block, writer);
   }
-  /// The cycle is in the newest window: no tail is left that it could enter instead.
-  void begin_newest_window() {
-    const auto all = times();
-    if (all.empty()) return;
-    port->window_begun.store((std::uint64_t{1} << 63U) | (std::uint64_t{all.back().epoch} << 32U) |
-                             all.back().window);
-  }
   void cut(const Vector3& by, const Vector3& to_axis) {
     ClBlock block;
     block.feed_meaning = FeedMeaning::kTip;
@@ -63,16 +55,6 @@ struct Planned {
     block.value = 0.5;
     tip += by;
     add(block);
-  }
-  [[nodiscard]] std::vector<TimePiece> times() const {
-    std::vector<TimePiece> out;
-    while (const TimePiece* piece = port->times.peek(out.size())) out.push_back(*piece);
-    return out;
-  }
-  [[nodiscard]] std::vector<PathPiece> paths() const {
-    std::vector<PathPiece> out;
-    while (const PathPiece* piece = port->paths.peek(out.size())) out.push_back(*piece);
-    return out;
   }
   /// How often the motion comes to rest.
   [[nodiscard]] int rests() const {
@@ -95,8 +77,6 @@ struct Planned {
 
   MachineModel model;
   SmoothPlanner planner{model};
-  std::unique_ptr<MotionPort> port = std::make_unique<MotionPort>();
-  MotionWriter writer{*port};
   JointVector start{};
   Vector3 tip, axis;
   std::uint64_t sequence = 0;

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "meridian/cycle/stop_off_path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "unit/cycle/cutting.hpp"
+
+namespace meridian::test::off_path {
+namespace {
+
+TEST(StopOffPath, OffThePathJointsRestTogetherOnTheirLinesInsideTheirFaultLimits) {
+  const MachineModel machine = machine_with_faults(2);
+  const JointVector at{10, 20, 30, 0.5, -0.5};
+  JointVector velocity{};
+  for (std::size_t i = 0; i < 5; ++i) {
+    velocity[i] = (i % 2 == 0 ? 0.9 : -0.3) * machine.joints[i].limits.velocity;
+  }
+  CycleState state;
+  state.stop = stop_off_path(machine, at, velocity);
+  ASSERT_EQ(state.stop.mode, StopMode::kOffPath);
+  const double duration = duration_of(state.stop), dt = duration / 2000;
+  ASSERT_GT(duration, 0.01);
+  double used = 0;
+  JointVector before = velocity;
+  for (int n = 1; n <= 2000; ++n) {
+    state.stop.time = n * dt;
+    put_off_path(state, machine.joint_count);
+    for (std::size_t i = 0; i < 5; ++i) {
+      const double share = velocity[i] / velocity[0];
+      EXPECT_NEAR(state.velocity[i], share * state.velocity[0], 1e-9) << "on one line";
+      EXPECT_NEAR(state.joints[i] - at[i], share * (state.joints[0] - at[0]), 1e-9);
+      const double accel = std::abs(state.velocity[i] - before[i]) / dt;
+      used = std::max(used, accel / machine.joints[i].limits.fault_acceleration);
+    }
+    before = state.velocity;
+  }
+  EXPECT_TRUE(is_stop_over(state.stop));
+  EXPECT_EQ(state.velocity[0], 0);
+  EXPECT_LE(used, 1 + 1e-9);
+  EXPECT_GT(used, 0.5) << "and as soon as they can";
+}
+
+TEST(StopOffPath, OffThePathItIsOverAtOnceWhereNothingMoves) {
+  const MachineModel machine = machine_with_faults(1);
+  const JointVector at{1, 2, 3, 0, 0};
+  EXPECT_EQ(duration_of(stop_off_path(machine, at, {})), 0);
+  JointVector unknown{};
+  unknown[2] = std::numeric_limits<double>::quiet_NaN();
+  const StopInProgress stop = stop_off_path(machine, at, unknown, StopEvent::kDrivesWentOn);
+  EXPECT_EQ(stop.mode, StopMode::kOffPathFromDrives);
+  EXPECT_EQ(duration_of(stop), 0) << "a velocity that is not known moves no joint";
+  EXPECT_EQ(stop.direction[2], 0);
+  EXPECT_TRUE(is_stop_over(stop));
+}
+
+TEST(StopOffPath, OffThePathItBeginsWhereAndHowTheJointsMove) {
+  const MachineModel machine = machine_with_faults(1);
+  const JointVector at{1, 2, 3, 0.1, 0.2}, velocity{10, -20, 0, 0.1, 0};
+  CycleState state;
+  state.stop = stop_off_path(machine, at, velocity);
+  put_off_path(state, machine.joint_count);
+  EXPECT_EQ(state.joints, at);
+  EXPECT_EQ(state.velocity, velocity);
+}
+
+TEST(StopOffPath, ADeviationFadesWithoutAJump) {
+  CycleState state;
+  state.stop.deviation = {0.8, -0.4};
+  state.stop.deviation_time = 0.2;
+  double last = 0.8;
+  for (const double share : {0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 0.999}) {
+    const auto at = [&](double x) {
+      state.joints = state.velocity = {};
+      state.stop.time = x * 0.2;
+      add_deviation(state, 2);
+      return state.joints;
+    };
+    const double ahead = at(share + 1e-6)[0], behind = at(std::max(0.0, share - 1e-6))[0];
+    const JointVector here = at(share);
+    EXPECT_LE(here[0], last) << share;
+    EXPECT_NEAR(here[1], -0.5 * here[0], 1e-12);
+    const double span = (share > 0 ? 2e-6 : 1e-6) * 0.2;
+    EXPECT_NEAR(state.velocity[0], (ahead - behind) / span, 1e-3) << share;
+    last = here[0];
+  }
+  EXPECT_LT(last, 1e-6);
+  state.joints = {};
+  state.stop.time = 0.2;
+  add_deviation(state, 2);
+  EXPECT_EQ(state.joints[0], 0) << "nothing is left";
+}
+
+}  // namespace
+}  // namespace meridian::test::off_path
