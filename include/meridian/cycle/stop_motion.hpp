@@ -41,7 +41,7 @@ inline void end_stop_here(CycleState& state) noexcept {
 
 /// One period of a stop along the plan, no farther than to the end of a block that the rate brakes
 /// for. False where it is over, or the plan rests before its rate does.
-[[nodiscard]] inline bool slow_down_one_period(Cycle& c) noexcept {
+[[nodiscard, gnu::noinline]] inline bool slow_down_one_period(Cycle& c) noexcept {
   const SingleBlock& single = c.state.single_block;
   c.state.piece_time += c.state.rate.advance(c.dt);
   for (int n = 0; n < kMaxPieces; ++n) {
