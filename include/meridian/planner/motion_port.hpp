@@ -25,7 +25,7 @@
 namespace meridian {
 
 struct MotionPort {
-  SpscRing<PathPiece, 4096> paths;
+  SpscRing<PathPiece, 2048> paths;
   SpscRing<TimePiece, 16384> times;
   /// Epoch and window whose tail the cycle entered, or committed to (keep_tail()), last, packed by
   /// MotionReader; 0: none yet.

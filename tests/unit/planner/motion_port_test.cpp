@@ -208,10 +208,10 @@ TEST(MotionPort, DropsWhatBelongsToAnotherEpoch) {
 
 TEST(MotionPort, SaysWhenAWindowWouldNotFit) {
   Script script;
-  EXPECT_TRUE(script.writer.has_room(4096, 16384));
-  EXPECT_FALSE(script.writer.has_room(4097, 1));
+  EXPECT_TRUE(script.writer.has_room(2048, 16384));
+  EXPECT_FALSE(script.writer.has_room(2049, 1));
   script.move(0, 10, true);
-  EXPECT_FALSE(script.writer.has_room(4096, 1));
+  EXPECT_FALSE(script.writer.has_room(2048, 1));
 }
 
 TEST(MotionPort, CountsNothingAsAheadThatATailMadeVoid) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "service/core/planner/feed/feed_rounding.hpp"
 
 namespace meridian {
 namespace {
@@ -189,6 +190,7 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
   cell.h = draft.h;
   cell.max_b = std::numeric_limits<double>::infinity();
   JointVector reference = joints_;
+  JointVector begin{};
   LimitedVector values{};  // at the sample before
   for (int k = 0; k <= FeedCell::kSteps; ++k) {
     CellSample& at = cell.at[static_cast<std::size_t>(k)];
@@ -217,6 +219,7 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
       if (is_fault(fault)) return fault;
     }
     values = here;
+    if (k == 0) begin = reference;
     // No step between where the machine rests, or a robot's cell ended, and here: a span that is
     // driven past a singular place and the next one may not agree.
     const bool is_same_point = k == 0 && (last_ == 0 || model_.family == MachineFamily::kRobot);
@@ -231,10 +234,10 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
   }
   joints_ = reference;
   cell.bound = bound_of(cell.at);
-  cell.tight = 1;
-  for (const double x : {draft.x, draft.x + draft.h}) {
-    cell.tight = std::min(cell.tight, share_beside_pole(model_, limits_, span.path, x));
-  }
+  const auto share_at = [&](double x, const JointVector& joints) {
+    return share_beside_singularity(model_, limits_, span.path, x, joints);
+  };
+  cell.tight = std::min(share_at(draft.x, begin), share_at(draft.x + draft.h, joints_));
   cell.made_b = cell.max_b;
   cell.made_tight = cell.tight;
   last_h_ = cell.h;

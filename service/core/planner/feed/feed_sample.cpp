@@ -9,7 +9,6 @@
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
-#include "service/core/planner/feed/path_choice.hpp"
 
 namespace meridian {
 namespace {
@@ -98,22 +97,6 @@ double time_per_u(const FeedLimits& limits, const CellSample& at) noexcept {
                         kCurvatureShare * std::cbrt(std::abs(at.d3[i]) / limits.jerk[i])});
   }
   return slowest;
-}
-
-double share_beside_pole(const MachineModel& model, const FeedLimits& limits, const PathPiece& path,
-                         double x) noexcept {
-  const bool is_solved = path.kind == PathKind::kLine || path.kind == PathKind::kArc;
-  const bool shows = path.kind == PathKind::kSpline || (is_solved && !path.is_free_driven);
-  if (!shows || redundant_joint(model) < 0) return 1;
-  const auto pose = pose_at(path, x);
-  const double distance = pole_distance(model, pose.axis);
-  const double noise = distance > 0 ? kAxisNoise / distance : 0;
-  const JointCaps caps = planned_caps(model, pose_in_machine(model, pose).tip.norm());
-  double share = 1;
-  for (int i = 0; i < limits.count; ++i) {
-    share = std::min(share, 1 - caps.noise_gain[i] * noise / limits.jerk[i]);
-  }
-  return std::max(share, kMinTight);
 }
 
 }  // namespace meridian

@@ -32,9 +32,4 @@ struct CellSample {
 /// Time by u at a sample: the most of velocity and feed, and of what curvature takes.
 [[nodiscard]] double time_per_u(const FeedLimits& limits, const CellSample& at) noexcept;
 
-/// Share of jerk left beside what rounding of the tool axis near the pole shows as in third
-/// differences, at `x` of `path`.
-[[nodiscard]] double share_beside_pole(const MachineModel& model, const FeedLimits& limits,
-                                       const PathPiece& path, double x) noexcept;
-
 }  // namespace meridian

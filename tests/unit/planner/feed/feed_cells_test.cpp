@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "service/core/planner/feed/feed_rounding.hpp"
 #include "unit/planner/feed/made_cells.hpp"
 #include "unit/planner/feed/straight_grid.hpp"
 
@@ -301,8 +302,9 @@ TEST(CellGrid, LeavesLessJerkToCellsBesideThePole) {
   ASSERT_GT(g.grid.last(), 50);
   for (std::int64_t k = 0; k < g.grid.last(); ++k) {
     const FeedCell& cell = g.grid[k];
-    const double shares[] = {share_beside_pole(g.model, g.limits, span.path, cell.x),
-                             share_beside_pole(g.model, g.limits, span.path, cell.x + cell.h)};
+    const double shares[] = {
+        share_beside_singularity(g.model, g.limits, span.path, cell.x, {}),
+        share_beside_singularity(g.model, g.limits, span.path, cell.x + cell.h, {})};
     EXPECT_EQ(cell.tight, std::min({1.0, shares[0], shares[1]})) << k;
     EXPECT_EQ(cell.made_tight, cell.tight);
   }

@@ -13,7 +13,6 @@
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
 #include "service/core/planner/feed/parabola.hpp"
-#include "service/core/planner/feed/path_choice.hpp"
 #include "unit/planner/feed/made_cells.hpp"
 
 namespace meridian::test::feed_sample {
@@ -191,33 +190,6 @@ TEST(FeedSample, TakesTheTimeOfWhatIsSlowest) {
   at.d3 = {0, -54};
   limits.jerk[1] = 2;
   EXPECT_DOUBLE_EQ(time_per_u(limits, at), kCurvatureShare * 3);
-}
-
-TEST(FeedSample, LosesJerkToRoundingBesideThePoleAlone) {
-  const MachineModel model = bench_machine();
-  const FeedLimits limits = make_feed_limits(model, {1, 10});
-  PathPiece path = make_line(pose_of(0, 2e-5, 0), pose_of(30, 0.5, 0));
-  const auto share_at = [&](double x) { return share_beside_pole(model, limits, path, x); };
-  const ToolPose pose = pose_at(path, 0.0);
-  const JointCaps caps = planned_caps(model, pose_in_machine(model, pose).tip.norm());
-  double expected = 1;
-  for (int i = 0; i < 5; ++i) {
-    const double noise = kAxisNoise / pole_distance(model, pose.axis);
-    expected = std::min(expected, 1 - caps.noise_gain[i] * noise / limits.jerk[i]);
-  }
-  ASSERT_GT(expected, kMinTight);
-  ASSERT_LT(expected, 0.999);
-  EXPECT_DOUBLE_EQ(share_at(0), expected);
-  EXPECT_GT(share_at(30), 0.999);
-  path.is_free_driven = true;
-  EXPECT_EQ(share_at(0), 1) << "the joint is not solved for";
-  path.kind = PathKind::kSpline;
-  for (std::size_t i = 0; i < 3; ++i) path.spline[i + 3] = {pose.axis[i]};
-  EXPECT_LT(share_at(0), 0.999) << "the tilt follows the axis";
-  path.kind = PathKind::kJoint;
-  EXPECT_EQ(share_at(0), 1);
-  path = make_line(pose_of(0, 1e-7, 0), pose_of(30, 0.5, 0));
-  EXPECT_EQ(share_at(0), kMinTight);
 }
 
 TEST(Parabola, HasItsTopWhereItIs) {
