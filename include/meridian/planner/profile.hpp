@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "meridian/planner/rate_limits.hpp"
+#include "meridian/planner/rate_room.hpp"
 
 /// Rest to rest along one path, jerk-limited. Units: mm, s.
 ///
@@ -83,6 +84,18 @@ struct Profile {
   return p;
 }
 
+inline const RateRoom kRoomOfAcceleration =
+    RateRoom::of_acceleration(kRateSlope_per_s, kRateCurvature_per_s2);
+inline const RateRoom kRoomOfJerk = RateRoom::of_jerk(kRateSlope_per_s, kRateCurvature_per_s2);
+
+/// What the rate filter leaves of `limits` where a motion has the velocity `v` and the acceleration
+/// `a` (rate_room.hpp).
+[[nodiscard]] inline PathLimits limits_beside_rate(const PathLimits& limits, double v,
+                                                   double a) noexcept {
+  return {limits.velocity, kRoomOfAcceleration.within(limits.acceleration, v),
+          kRoomOfJerk.within(limits.jerk - kRateCurvature_per_s2 * v, 3 * a)};
+}
+
 /// As rest_to_rest(), with the reserve that the rate filter needs (rate_limits.hpp): all overrides
 /// of the motion keep `limits`. Nothing (jerk 0) where the reserve leaves no acceleration or jerk.
 /// Proof: tests/unit/planner/profile_test.cpp.
@@ -92,11 +105,9 @@ struct Profile {
   // needs: from an upper estimate every second step errs on the safe side.
   Profile p = rest_to_rest(length, limits);
   for (int n = 0; n < 3; ++n) {
-    const double v = p.peak_velocity(), a = p.peak_acceleration();
-    const double accel = limits.acceleration - kRateSlope_per_s * v;
-    const double jerk = limits.jerk - 3 * kRateSlope_per_s * a - kRateCurvature_per_s2 * v;
-    if (!(accel > 0) || !(jerk > 0)) return {};
-    p = rest_to_rest(length, {limits.velocity, accel, jerk});
+    const PathLimits left = limits_beside_rate(limits, p.peak_velocity(), p.peak_acceleration());
+    if (!(left.acceleration > 0) || !(left.jerk > 0)) return {};
+    p = rest_to_rest(length, left);
   }
   return p;
 }

@@ -72,10 +72,13 @@ LimitView LimitMap::look(const PathPiece& path, const TimePiece& piece, double p
     const auto n = static_cast<std::size_t>(i);
     const double slope = is_smooth ? rates_.slope_per_s : kRateSlope_per_s;
     const double curvature = is_smooth ? rates_.curvature_per_s2 : kRateCurvature_per_s2;
+    const double accel_used = RateRoom::of_acceleration(slope, curvature).largest(accel, velocity);
+    const double jerk_used =
+        RateRoom::of_jerk(slope, curvature).largest(jerk, 3 * accel) + curvature * velocity;
     const double uses[3] = {
         velocity / (is_smooth ? smooth_.velocity[n] : own.velocity),
-        (accel + slope * velocity) / (is_smooth ? smooth_.acceleration[n] : own.acceleration),
-        (jerk + 3 * slope * accel + curvature * velocity) / own.jerk};
+        accel_used / (is_smooth ? smooth_.acceleration[n] : own.acceleration),
+        jerk_used / own.jerk};
     for (int order = 0; order < 3; ++order) {
       if (!weigh(uses[order], order == 0 ? kNearShare : kRampShare, joint_limit(i, order)))
         continue;

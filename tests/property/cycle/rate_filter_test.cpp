@@ -228,5 +228,27 @@ TEST(RateFilter, KnowsTheRateFromWhichAPlanTimeIsEnoughToRest) {
   EXPECT_EQ(RateFilter().rate_with_rest_in(-1), 0);
 }
 
+/// What planner/rate_room.hpp takes for granted.
+TEST(RateFilter, HasNoMoreSlopeThanItCanTakeBackBeforeOne) {
+  std::mt19937 random(12);
+  const auto real = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  for (const double ramp : {1.0, 3.0}) {
+    const RateBounds bounds{1 / ramp, 10 / ramp};
+    RateFilter filter(bounds);
+    filter.reset(1);
+    double closest = 0;
+    for (int n = 0; n < 200000; ++n) {
+      if (n % 37 == 0) filter.aim(real(0, 1) < 0.4 ? 1 : real(0, 1.1));
+      (void)filter.advance(real(1e-4, 4e-3));
+      const double max = std::sqrt(2 * bounds.curvature * (1 - filter.rate()));
+      ASSERT_LE(std::abs(filter.slope()), std::min(bounds.slope, max) + 1e-6) << n;
+      if (filter.rate() < 1) closest = std::max(closest, std::abs(filter.slope()) / max);
+    }
+    EXPECT_GT(closest, 0.99) << "it comes to rest at 1 by all of its curvature";
+  }
+}
+
 }  // namespace
 }  // namespace meridian::test::rate_filter

@@ -61,7 +61,7 @@ double stop(const MachineModel& machine, const std::vector<ClBlock>& blocks, Cau
             LimitShares& worst) {
   SmoothRunning run(machine, blocks, joints_of(machine, blocks[0]));
   EXPECT_TRUE(run.is_started());
-  for (double t = 0; t < 0.64; t += run.world.dt()) run.run();
+  for (double t = 0; t < 0.63; t += run.world.dt()) run.run();
   EXPECT_EQ(run.world.now(), State::kRunning);
   std::size_t first = run.world.records.size();
   if (cause == Cause::kDriveFault) run.world.in.feedback.fault_mask = 1;

@@ -80,7 +80,8 @@ TEST(FeedCheck, CountsWhatAccelerationAndVelocityLeaveToTheRateFilterAsJerk) {
   limits.curvature = 0.1;
   FeedUse use;
   add_use(limits, at, 2, 3, 5, use);  // q̇ 2, q̈ 3 - 8, q⃛ 5 - 36
-  EXPECT_NEAR(use.jerk, 31 + 3 * 0.25 * 5 + 0.1 * 2, 1e-12);
+  EXPECT_NEAR(use.jerk, RateRoom::of_jerk(0.25, 0.1).largest(31, 3 * 5) + 0.1 * 2, 1e-12);
+  EXPECT_NEAR(use.acceleration, RateRoom::of_acceleration(0.25, 0.1).largest(5, 2), 1e-12);
 }
 
 TEST(FeedCheck, SeesNoTopBesideAChangeOfTheJerksSign) {
@@ -101,7 +102,11 @@ struct Bent {
   [[nodiscard]] double jerk() const { return d1 * j + 3 * d2 * v * a + d3 * v * v * v; }
   /// The jerk and what the rate filter asks for beside it, by bent_limits().
   [[nodiscard]] double jerk_with_rate() const {
-    return std::abs(jerk()) + 3 * 0.3 * std::abs(acceleration()) + 0.7 * d1 * v;
+    return RateRoom::of_jerk(0.3, 0.7).largest(std::abs(jerk()), 3 * std::abs(acceleration())) +
+           0.7 * d1 * v;
+  }
+  [[nodiscard]] double acceleration_with_rate() const {
+    return RateRoom::of_acceleration(0.3, 0.7).largest(std::abs(acceleration()), d1 * v);
   }
 };
 
@@ -118,7 +123,7 @@ FeedLimits bent_limits() {
 void expect_use(const FeedUse& use, const Bent& bent, double max_b) {
   EXPECT_NEAR(use.b, bent.v * bent.v / max_b, 1e-12);
   EXPECT_NEAR(use.velocity, bent.d1 * bent.v / 10, 1e-12);
-  EXPECT_NEAR(use.acceleration, (bent.acceleration() + 0.3 * bent.d1 * bent.v) / 20, 1e-12);
+  EXPECT_NEAR(use.acceleration, bent.acceleration_with_rate() / 20, 1e-12);
   EXPECT_NEAR(use.jerk, bent.jerk_with_rate() / 40, 1e-12);
 }
 
@@ -163,8 +168,7 @@ TEST(FeedCheck, KnowsTheMotionOfALaw) {
     bent.j = -10 * bent.v;
     const FeedUse use = use_of(bent_limits(), cell, law);
     EXPECT_NEAR(use.velocity, bent.d1 * bent.v / 10, 1e-12);
-    EXPECT_NEAR(use.acceleration, (std::abs(bent.acceleration()) + 0.3 * bent.d1 * bent.v) / 20,
-                1e-12);
+    EXPECT_NEAR(use.acceleration, bent.acceleration_with_rate() / 20, 1e-12);
     EXPECT_NEAR(use.jerk, bent.jerk_with_rate() / 40, 1e-12);
   }
 }

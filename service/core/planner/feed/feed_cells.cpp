@@ -43,6 +43,19 @@ CellBound bound_of(const std::array<CellSample, FeedCell::kSteps + 1>& at) noexc
   return out;
 }
 
+/// Whether a joint jumps from one sample to the next, or at all at the same point.
+PathFault check_step(const MachineModel& model, const JointVector& before, const JointVector& here,
+                     bool is_same_point) noexcept {
+  for (int i = 0; i < model.joint_count; ++i) {
+    const double jump = here[i] - before[i];
+    const double rounding = model.joints[i].is_rotary ? kStep_rad : kStep_mm;
+    const bool is_jump = (is_same_point && std::abs(jump) > rounding) ||
+                         (model.joints[i].is_rotary && std::abs(jump) > kLargestJump);
+    if (is_jump) return {PathFault::Kind::kJump, i, jump};
+  }
+  return {};
+}
+
 }  // namespace
 
 CellGrid::CellGrid(const MachineModel& model, const FeedLimits& limits,
@@ -154,6 +167,13 @@ void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
   drafts_.clear();
 }
 
+bool CellGrid::leaves_reach(const Draft& draft) const noexcept {
+  const FeedSpan& span = waiting_[static_cast<std::size_t>(draft.waiting)];
+  JointVector reference = joints_;
+  CellSample end;
+  return is_fault(sample(span, span.length, reference, end));
+}
+
 PathFault CellGrid::make_cells() noexcept {
   std::size_t used = 0;
   while (used < drafts_.size() && last_ - first_ < settings_.kept_cells) {
@@ -165,6 +185,9 @@ PathFault CellGrid::make_cells() noexcept {
     if (fault_.kind == PathFault::Kind::kJump && split(used)) {
       fault_ = {};
       continue;
+    }
+    if (fault_.kind == PathFault::Kind::kJump && leaves_reach(drafts_[used])) {
+      fault_ = {PathFault::Kind::kUnreachable, -1, 0};
     }
     if (fault_.kind != PathFault::Kind::kNone) {
       faulty_span_ = next_span_ + static_cast<std::uint64_t>(drafts_[used].waiting);
@@ -223,13 +246,8 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
     // No step between where the machine rests, or a robot's cell ended, and here: a span that is
     // driven past a singular place and the next one may not agree.
     const bool is_same_point = k == 0 && (last_ == 0 || model_.family == MachineFamily::kRobot);
-    for (int i = 0; i < model_.joint_count; ++i) {
-      const double jump = reference[i] - before[i];
-      const double rounding = model_.joints[i].is_rotary ? kStep_rad : kStep_mm;
-      if (is_same_point && std::abs(jump) > rounding) return {PathFault::Kind::kJump, i, jump};
-      if (model_.joints[i].is_rotary && std::abs(jump) > kLargestJump) {
-        return {PathFault::Kind::kJump, i, jump};
-      }
+    if (const auto fault = check_step(model_, before, reference, is_same_point); is_fault(fault)) {
+      return fault;
     }
   }
   joints_ = reference;

@@ -53,6 +53,7 @@ bool comes_to_rest(const CellLaw& law, double second, double h) noexcept {
 FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell, const CellMotion& motion,
                       const Samples& b) noexcept {
   const auto& [v, a, j] = motion;
+  const RateRoom acceleration_room = limits.acceleration_room(), jerk_room = limits.jerk_room();
   FeedUse use;
   Samples share;
   for (int k = 0; k <= kCellSteps; ++k) share[k] = b[k] / cell.at[k].max_b;
@@ -63,9 +64,9 @@ FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell, const Cell
       const CellSample& at = cell.at[k];
       velocity[k] = at.d1[i] * v[k];
       alone[k] = at.d1[i] * a[k] + at.d2[i] * b[k];
-      acceleration[k] = std::abs(alone[k]) + limits.slope * std::abs(velocity[k]);
+      acceleration[k] = acceleration_room.largest(std::abs(alone[k]), std::abs(velocity[k]));
       own_jerk[k] = at.d1[i] * j[k] + 3 * at.d2[i] * v[k] * a[k] + at.d3[i] * v[k] * b[k];
-      jerk[k] = std::abs(own_jerk[k]) + 3 * limits.slope * std::abs(alone[k]) +
+      jerk[k] = jerk_room.largest(std::abs(own_jerk[k]), 3 * std::abs(alone[k])) +
                 limits.curvature * std::abs(velocity[k]);
     }
     const double fastest = peak_of(velocity);
@@ -73,7 +74,7 @@ FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell, const Cell
     // Beside a corner of |jerk| or |acceleration| a parabola rises too far: there the peaks of the
     // parts speak.
     if (largest > limits.full_jerk[i]) {
-      largest = std::min(largest, peak_of(own_jerk) + 3 * limits.slope * peak_of(alone) +
+      largest = std::min(largest, jerk_room.largest(peak_of(own_jerk), 3 * peak_of(alone)) +
                                       limits.curvature * fastest);
     }
     use.velocity = std::max(use.velocity, fastest / limits.velocity[i]);
@@ -116,16 +117,17 @@ FeedUse max_use_of(const FeedLimits& limits, const FeedCell& cell, const CellLaw
   const double a = 0.5 * std::max(std::abs(law.slope), std::abs(law.slope_end));
   const double j = 0.5 * std::abs(second) * v;
   use.b = b / cell.max_b;
+  const RateRoom acceleration_room = limits.acceleration_room(), jerk_room = limits.jerk_room();
   const CellBound& bound = cell.bound;
   for (int i = 0; i < limits.count; ++i) {
     const double d1 = bound.rate[i], d2 = std::max(bound.d2.up[i], bound.d2.down[i]);
     const double d3 = std::max(bound.d3.up[i], bound.d3.down[i]);
     const double velocity = d1 * v, alone = d1 * a + d2 * b;
-    const double jerk = d1 * j + 3 * d2 * v * a + d3 * v * b + 3 * limits.slope * alone +
+    const double jerk = jerk_room.largest(d1 * j + 3 * d2 * v * a + d3 * v * b, 3 * alone) +
                         limits.curvature * velocity;
     use.velocity = std::max(use.velocity, velocity / limits.velocity[i]);
-    use.acceleration =
-        std::max(use.acceleration, (alone + limits.slope * velocity) / limits.acceleration[i]);
+    use.acceleration = std::max(
+        use.acceleration, acceleration_room.largest(alone, velocity) / limits.acceleration[i]);
     use.jerk = std::max(use.jerk, jerk / limits.full_jerk[i]);
   }
   return use;
@@ -140,15 +142,18 @@ FeedUse use_of_motion(const FeedLimits& limits, const FeedCell& cell,
 
 void add_use(const FeedLimits& limits, const CellSample& at, double v, double a, double j,
              FeedUse& use) noexcept {
+  const RateRoom acceleration_room = limits.acceleration_room(), jerk_room = limits.jerk_room();
   use.b = std::max(use.b, v * v / at.max_b);
   for (int i = 0; i < limits.count; ++i) {
     const double velocity = std::abs(at.d1[i] * v);
     const double acceleration = std::abs(at.d1[i] * a + at.d2[i] * v * v);
-    const double jerk = std::abs(at.d1[i] * j + 3 * at.d2[i] * v * a + at.d3[i] * v * v * v) +
-                        3 * limits.slope * acceleration + limits.curvature * velocity;
+    const double own_jerk = std::abs(at.d1[i] * j + 3 * at.d2[i] * v * a + at.d3[i] * v * v * v);
+    const double jerk =
+        jerk_room.largest(own_jerk, 3 * acceleration) + limits.curvature * velocity;
     use.velocity = std::max(use.velocity, velocity / limits.velocity[i]);
-    use.acceleration = std::max(use.acceleration,
-                                (acceleration + limits.slope * velocity) / limits.acceleration[i]);
+    use.acceleration =
+        std::max(use.acceleration,
+                 acceleration_room.largest(acceleration, velocity) / limits.acceleration[i]);
     use.jerk = std::max(use.jerk, jerk / limits.full_jerk[i]);
   }
 }

@@ -13,12 +13,16 @@ FeedLimits make_feed_limits(const MachineModel& model, const RateReserve& reserv
   out.curvature = reserve.curvature;
   for (int i = 0; i < out.count; ++i) {
     const JointLimits& limits = limited_spec(model, i).limits;
-    const double wanted =
-        3 * reserve.slope * limits.acceleration + reserve.curvature * limits.velocity;
+    // What a share of velocity and acceleration leaves of the jerk: no less than in proportion.
+    const auto jerk_beside = [&](double share) {
+      return out.jerk_room().within(limits.jerk - share * reserve.curvature * limits.velocity,
+                                    3 * share * limits.acceleration);
+    };
+    const double wanted = limits.jerk - jerk_beside(1);
     const double share = std::min(1.0, kLargestShare * limits.jerk / std::max(wanted, 1e-300));
     out.velocity[i] = share * limits.velocity;
     out.acceleration[i] = share * limits.acceleration;
-    out.jerk[i] = limits.jerk - share * wanted;
+    out.jerk[i] = jerk_beside(share);
     out.full_jerk[i] = limits.jerk;
   }
   return out;

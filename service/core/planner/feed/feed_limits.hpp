@@ -3,6 +3,7 @@
 
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/planner/rate_limits.hpp"
+#include "meridian/planner/rate_room.hpp"
 
 namespace meridian {
 
@@ -13,14 +14,18 @@ struct RateReserve {
 };
 
 /// What a plan of the feed may use of every joint and drive of the stage: the machine's limits less
-/// what the rate filter may add. With |q̈| + slope |q̇| <= acceleration and |q⃛| <= jerk every run of
-/// the plan at a rate in [0, 1] stays inside the machine's limits (docs/motion.md, eq. 8.3). Units:
-/// mm, rad, s.
+/// what the rate filter may add (RateRoom): with |q⃛| <= jerk besides, every run of the plan at a
+/// rate in [0, 1] stays inside the machine's limits (docs/motion.md, eq. 8.3). Units: mm, rad, s.
 struct FeedLimits {
   int count = 0;
   LimitedVector velocity{}, acceleration{}, jerk{};
   LimitedVector full_jerk{};        ///< the machine's
   double slope = 0, curvature = 0;  ///< of the rate, 1/s and 1/s²
+
+  [[nodiscard]] RateRoom acceleration_room() const noexcept {
+    return RateRoom::of_acceleration(slope, curvature);
+  }
+  [[nodiscard]] RateRoom jerk_room() const noexcept { return RateRoom::of_jerk(slope, curvature); }
 
   /// Jerk less what A and V may take of it, and no room for the rate beside.
   [[nodiscard]] FeedLimits without_rate() const noexcept {

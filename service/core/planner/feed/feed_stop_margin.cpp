@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "meridian/planner/rate_limits.hpp"
 #include "meridian/planner/time_law.hpp"
 
 namespace meridian {
@@ -25,6 +24,8 @@ constexpr double kFast = 1.0002;  // on ṡ² that feed and velocity allow: what
 constexpr double kSlow = 0.4;     // rate of plan time below which slow_* may be used
 /// Rates of plan time at which authority is sought where there is none at the full rate.
 constexpr double kRates[] = {0.97, 0.94, 0.9, 0.85, 0.78, 0.7, 0.6, 0.45, 0.3, 0.15};
+/// The same of a tail, which is hardly ever run.
+constexpr double kTailRates[] = {0.85, 0.6};
 
 /// Deepest deceleration of a stop that nothing but its jerk bounds.
 double depth_of(const PathState& p, double jerk) noexcept {
@@ -34,7 +35,12 @@ double depth_of(const PathState& p, double jerk) noexcept {
 }  // namespace
 
 FeedStopMargin::FeedStopMargin(const MachineModel& model) noexcept
-    : count_(limited_count(model)), slope_(rate_limits(model.override_ramp_s).slope_per_s) {
+    : FeedStopMargin(model, rate_limits(model.override_ramp_s)) {}
+
+FeedStopMargin::FeedStopMargin(const MachineModel& model, const RateLimits& rates) noexcept
+    : count_(limited_count(model)),
+      slope_(rates.slope_per_s),
+      room_(RateRoom::of_jerk(rates.slope_per_s, rates.curvature_per_s2)) {
   for (int i = 0; i < count_; ++i) {
     const JointLimits& limits = limited_spec(model, i).limits;
     hold_.caps.acceleration[i] = 1 / (kShare * limits.acceleration);
@@ -62,16 +68,16 @@ void FeedStopMargin::grant(std::span<const FeedPiece> pieces, std::span<TimePiec
 
 bool FeedStopMargin::grant(const StopStretch& stretch, std::span<TimePiece> times) noexcept {
   const bool is_tail = times.front().is_tail, is_alone = times.size() == 1;
-  const Grant hold = find(hold_, stretch, is_alone && !is_tail);
+  std::span<const double> rates;
+  if (is_alone) rates = is_tail ? std::span<const double>(kTailRates) : kRates;
+  const Grant hold = find(hold_, stretch, rates);
   if (!is_alone && !(hold.authority.jerk > 0)) return false;
-  const Grant fault = find(fault_, stretch, is_alone && !is_tail);
+  const Grant fault = find(fault_, stretch, rates);
   if (!is_alone && !(fault.authority.jerk > 0)) return false;
   SlowGrant slow_hold, slow_fault;
-  if (!is_tail) {
-    const StopStretch slow = stretch.at_rate(kSlow);
-    slow_hold = find_slow(hold_.caps, slow);
-    slow_fault = find_slow(fault_.caps, slow);
-  }
+  const StopStretch slow = stretch.at_rate(kSlow);
+  if (!is_tail || hold.velocity != kAnyVelocity) slow_hold = find_slow(hold_.caps, slow);
+  if (!is_tail || fault.velocity != kAnyVelocity) slow_fault = find_slow(fault_.caps, slow);
   const double slow_velocity = kSlow * stretch.min_velocity();
   for (TimePiece& time : times) {
     time.stop_accel = hold.authority.accel;
@@ -124,7 +130,7 @@ FeedStopMargin::SlowGrant FeedStopMargin::find_slow(const Caps& caps,
 }
 
 FeedStopMargin::Grant FeedStopMargin::find(Search& search, const StopStretch& stretch,
-                                           bool is_slower_good) const noexcept {
+                                           std::span<const double> rates) const noexcept {
   const StopMargin largest = max_in(search.caps, stretch);
   StopMargin got;
   if (search.last.jerk > 0) {
@@ -135,8 +141,7 @@ FeedStopMargin::Grant FeedStopMargin::find(Search& search, const StopStretch& st
   if (!(got.jerk > 0)) got = lessen(search.caps, stretch, largest, largest).authority;
   search.last = got;
   if (got.jerk > 0) return {got, kAnyVelocity};
-  if (!is_slower_good) return {};
-  for (const double rate : kRates) {
+  for (const double rate : rates) {
     const StopStretch slower = stretch.at_rate(rate);
     got = lessen(search.caps, slower, largest, largest).authority;
     if (got.jerk > 0) return {got, slower.min_velocity()};
@@ -230,18 +235,30 @@ bool FeedStopMargin::passes(const Caps& caps, const CellBlock& block, const Stop
   if (v2 > StopWalk::kBetweenSteps * kFast * block.max_b) return false;
   const double depth = std::max(walk.authority().accel, -walk.from().dds);
   const double sinking = 3 * std::min(walk.largest_product(), speed * depth);
-  const Share share = share_of(caps, block.bound, block.made_tight, walk.authority(),
-                               {v2, v2 * speed, 0, sinking, 0});
+  const Share share =
+      share_of(caps, block.bound, block.made_tight, walk.bounds(), {v2, v2 * speed, 0, sinking, 0});
   return share.acceleration <= std::max(1.0, use.acceleration) &&
          share.jerk <= std::max(1.0, use.jerk);
+}
+
+double FeedStopMargin::jerk_to_rest(const PathState& p) const noexcept {
+  if (!(p.dds < 0) || !(p.ds > 0)) return 0;
+  return kShare * room_.largest(0.5 * p.dds * p.dds / p.ds, -p.dds);
 }
 
 FeedStopMargin::Use FeedStopMargin::use_of(const Caps& caps, const StopStretch& stretch,
                                            const StopMargin& authority) const noexcept {
   const auto parts = stretch.parts();
   const auto walk_from = [&](std::size_t n) {
-    return n < parts.size() ? StopWalk(parts[n].begin, authority, parts[n].cell_begin)
-                            : StopWalk(stretch.end(), authority, parts.back().cell_begin);
+    if (n == parts.size()) {
+      StopWalk walk(stretch.end(), authority, parts.back().cell_begin);
+      walk.raise_jerk(jerk_to_rest(stretch.end()));
+      return walk;
+    }
+    StopWalk walk(parts[n].begin, authority, parts[n].cell_begin);
+    walk.raise_jerk(jerk_to_rest(parts[n].begin));
+    for (const PathState& between : parts[n].between) walk.raise_jerk(jerk_to_rest(between));
+    return walk;
   };
   Use use;
   StopWalk walk = walk_from(0);
@@ -249,7 +266,10 @@ FeedStopMargin::Use FeedStopMargin::use_of(const Caps& caps, const StopStretch& 
     StopWalk next = walk_from(n + 1);
     const bool is_below = walk.stays_below(next, parts[n].duration);
     add_use(caps, parts[n].cell, is_below ? parts[n].cell + 1 : kNoEnd, walk, use);
-    if (is_below) next.raise_product(walk.largest_product());
+    if (is_below) {
+      next.raise_product(walk.largest_product());
+      next.raise_jerk(walk.bounds().jerk);
+    }
     walk = next;
   }
   if (use.is_within()) add_use(caps, parts.back().cell, kNoEnd, walk, use);
@@ -280,7 +300,7 @@ void FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, std::int64_t e
     use.is_too_fast = k > cell ? motion.v2 > StopWalk::kBetweenSteps * kFast * here.max_b
                                : rises_too_far(here, begin, in_cell, authority.jerk);
     if (use.is_too_fast) return;
-    const Share share = share_of(caps, here.bound, here.made_tight, authority, motion);
+    const Share share = share_of(caps, here.bound, here.made_tight, walk.bounds(), motion);
     use.acceleration = std::max(use.acceleration, share.acceleration);
     if (share.jerk > use.jerk) {
       use.jerk = share.jerk;

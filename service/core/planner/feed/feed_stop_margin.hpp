@@ -6,6 +6,8 @@
 
 #include "meridian/cycle/stop_law.hpp"
 #include "meridian/kinematics/limited.hpp"
+#include "meridian/planner/rate_limits.hpp"
+#include "meridian/planner/rate_room.hpp"
 #include "meridian/planner/time_piece.hpp"
 #include "service/core/planner/feed/cell_blocks.hpp"
 #include "service/core/planner/feed/feed_cells.hpp"
@@ -35,14 +37,16 @@ class FeedStopMargin {
   void begin(const CellGrid& grid, std::int64_t rest_cell) noexcept;
 
   /// Fills in the authority of `time`, made of `piece`: at the full rate or the next one that has
-  /// some, and for slow motions; 0 where there is none. In a tail, which comes to rest anyway, at
-  /// the full rate alone.
+  /// some, and for slow motions; 0 where there is none. In a tail, which comes to rest anyway, for
+  /// slow motions only where there is none at the full rate.
   void grant(const FeedPiece& piece, TimePiece& time) noexcept { grant({&piece, 1}, {&time, 1}); }
   /// The same of StopStretch::kMaxParts pieces at most that follow one another and share one
   /// authority; where none is good for all of them, each gets its own.
   void grant(std::span<const FeedPiece> pieces, std::span<TimePiece> times) noexcept;
 
  private:
+  FeedStopMargin(const MachineModel& model, const RateLimits& rates) noexcept;
+
   /// One over the limits.
   struct Caps {
     CellBound::Values acceleration = CellBound::Values::Zero();
@@ -95,8 +99,9 @@ class FeedStopMargin {
 
   /// Into `times`. False: there is no authority for all of a stretch of several pieces.
   [[nodiscard]] bool grant(const StopStretch& stretch, std::span<TimePiece> times) noexcept;
+  /// At the full rate, or at the first of `rates` that has some.
   [[nodiscard]] Grant find(Search& search, const StopStretch& stretch,
-                           bool is_slower_good) const noexcept;
+                           std::span<const double> rates) const noexcept;
   [[nodiscard]] SlowGrant find_slow(const Caps& caps, const StopStretch& stretch) const noexcept;
   /// What the cells of the stretch allow next to rest.
   [[nodiscard]] StopMargin max_in(const Caps& caps, const StopStretch& stretch) const noexcept;
@@ -114,6 +119,10 @@ class FeedStopMargin {
   /// ends do: they may go farther where the plan brakes harder than they.
   [[nodiscard]] bool ends_before_plan(const StopStretch& stretch,
                                       const StopMargin& authority) const noexcept;
+  /// Jerk of a stop from `p`, or from there at a lower rate, that ends a braking which is deep
+  /// already (StopLaw): there the authority does not bound it. Less kShare, which is not for it:
+  /// the plan itself comes to rest so.
+  [[nodiscard]] double jerk_to_rest(const PathState& p) const noexcept;
   /// The use of all stops from `stretch`, or of some that use too much.
   [[nodiscard]] Use use_of(const Caps& caps, const StopStretch& stretch,
                            const StopMargin& authority) const noexcept;
@@ -134,6 +143,7 @@ class FeedStopMargin {
 
   int count_ = 0;
   double slope_ = 0;  ///< of the rate, 1/s
+  RateRoom room_;     ///< of jerk
   Search hold_, fault_;
   const CellGrid* grid_ = nullptr;
   std::int64_t rest_cell_ = 0;

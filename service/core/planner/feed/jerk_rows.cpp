@@ -10,25 +10,30 @@ namespace {
 
 constexpr double kTiniest = 1e-300;
 
-/// What the rate filter adds to an acceleration, (8.6): at b = 0, and per b.
-struct FilterTerm {
-  double fixed = 0, per_b = 0;
+/// |q' b'/2 + q'' b| + per_b b <= limit, (8.6): what the rate filter leaves of an acceleration
+/// `limit`, about b̄.
+struct LimitLine {
+  double per_b = 0, limit = 0;
 };
-FilterTerm filter_term(const FeedLimits& limits, double d1, double bar) noexcept {
-  const double filter = limits.slope * std::abs(d1), root = std::sqrt(bar);
-  return {0.5 * filter * root, filter / (2 * root)};
+LimitLine limit_line(const RateRoom& room, double limit, double d1,
+                                   double bar) noexcept {
+  const double root = std::sqrt(bar), rate = std::abs(d1);
+  const auto [share, slope] = room.tangent(limit, rate * root);
+  const double filter = slope * rate / share;
+  return {filter / (2 * root), limit / share - 0.5 * filter * root};
 }
 
 }  // namespace
 
 void bound_slope(const FeedLimits& limits, JerkCell& at) noexcept {
   const CellSample& sample = at.cell->at[0];
+  const RateRoom room = limits.acceleration_room();
   at.max_slope = std::numeric_limits<double>::infinity();
   for (int j = 0; j < limits.count; ++j) {
     const double d1 = std::abs(sample.d1[j]);
-    const double left = limits.acceleration[j] * at.accel_share -
-                        filter_term(limits, d1, at.bar[0]).fixed +
-                        std::abs(sample.d2[j]) * at.max_b[0];
+    const double limit = limits.acceleration[j] * at.accel_share;
+    const double left =
+        limit_line(room, limit, d1, at.bar[0]).limit + std::abs(sample.d2[j]) * at.max_b[0];
     const double largest = 2 * left / std::max(d1, kTiniest);
     if (largest >= at.max_slope) continue;
     at.max_slope = largest;
@@ -48,19 +53,20 @@ void JerkRows::add_pair(const JerkCoefficients& value, const JerkCoefficients& r
 
 void JerkRows::add_acceleration(const FeedLimits& limits, const JerkCell& at) noexcept {
   const CellSample& sample = at.cell->at[0];
+  const RateRoom room = limits.acceleration_room();
   for (int j = 0; j < limits.count; ++j) {
     const double d1 = sample.d1[j], d2 = sample.d2[j];
-    const FilterTerm filter = filter_term(limits, d1, at.bar[0]);
-    const double limit = limits.acceleration[j] * at.accel_share - filter.fixed;
+    const LimitLine line =
+        limit_line(room, limits.acceleration[j] * at.accel_share, d1, at.bar[0]);
     const double largest =
-        0.5 * std::abs(d1) * at.max_slope + (std::abs(d2) + filter.per_b) * at.max_b[0];
-    if (largest <= limit && j != at.slope_joint) continue;
+        0.5 * std::abs(d1) * at.max_slope + (std::abs(d2) + line.per_b) * at.max_b[0];
+    if (largest <= line.limit && j != at.slope_joint) continue;
     JerkCoefficients value{}, rest{};
     for (std::size_t t = 0; t < 3; ++t) {
       value[t] = 0.5 * d1 * at.slope[t] + d2 * at.b[t];
-      rest[t] = filter.per_b * at.b[t];
+      rest[t] = line.per_b * at.b[t];
     }
-    add_pair(value, rest, limit);
+    add_pair(value, rest, line.limit);
   }
 }
 
@@ -85,6 +91,7 @@ void JerkRows::add_jerk(const FeedLimits& limits, const JerkCell& at) noexcept {
   samples[2].max_slope = at.max_end;
 
   // Largest |b''|, which is the same all over the cell, and by which row.
+  const RateRoom room = limits.jerk_room();
   std::array<std::array<JerkLine, kMaxLimited>, 3> lines;
   double max_bend = std::numeric_limits<double>::infinity();
   std::size_t bend_sample = 0;
@@ -92,7 +99,7 @@ void JerkRows::add_jerk(const FeedLimits& limits, const JerkCell& at) noexcept {
   for (std::size_t p = 0; p < 3; ++p) {
     const RowSample& sample = samples[p];
     for (int j = 0; j < limits.count; ++j) {
-      const JerkLine& line = lines[p][j] = line_at(limits, sample, j, at.jerk_share);
+      const JerkLine& line = lines[p][j] = line_at(limits, room, sample, j, at.jerk_share);
       const double largest = (line.limit + rest_of(line, sample, j)) /
                              std::max(0.5 * std::abs(sample.at->d1[j]), kTiniest);
       if (largest >= max_bend) continue;
@@ -128,10 +135,10 @@ double JerkRows::rest_of(const JerkLine& line, const RowSample& sample, int j) n
          std::abs(line.per_accel) * accel;
 }
 
-/// Of |l₃| + 3 Ω₁ |l₂| b^-½ + Ω₂ |q'| <= J b^-½ the tangent about b and b' of the linearisation,
-/// where both are known; else J less what A and V take of it.
-JerkRows::JerkLine JerkRows::line_at(const FeedLimits& limits, const RowSample& sample, int j,
-                                     double share) noexcept {
+/// Of (8.3) over √b, with the ε that binds at b̄ and b̄' where both are known, the tangent about
+/// them; else J less what A and V take of it.
+JerkRows::JerkLine JerkRows::line_at(const FeedLimits& limits, const RateRoom& room,
+                                     const RowSample& sample, int j, double share) noexcept {
   const double root = std::sqrt(sample.bar);
   const double per_b = 1 / (2 * sample.bar * root);
   if (std::isnan(sample.bar_slope)) {
@@ -140,10 +147,11 @@ JerkRows::JerkLine JerkRows::line_at(const FeedLimits& limits, const RowSample& 
   }
   const double d1 = sample.at->d1[j], d2 = sample.at->d2[j];
   const double accel = 0.5 * d1 * sample.bar_slope + d2 * sample.bar;
-  const double jerk = share * limits.full_jerk[j], slope = 3 * limits.slope;
-  return {
-      std::copysign(slope / root, accel), std::max(0.0, jerk - slope * std::abs(accel)) * per_b,
-      1.5 * jerk / root - limits.curvature * std::abs(d1) - 0.5 * slope * std::abs(accel) / root};
+  const double full = share * limits.full_jerk[j], curved = limits.curvature * std::abs(d1);
+  const auto tangent = room.tangent(full - curved * root, 3 * std::abs(accel));
+  const double jerk = full / tangent.share, slope = 3 * tangent.slope / tangent.share;
+  return {std::copysign(slope / root, accel), std::max(0.0, jerk - slope * std::abs(accel)) * per_b,
+          1.5 * jerk / root - curved / tangent.share - 0.5 * slope * std::abs(accel) / root};
 }
 
 void JerkRows::find(const FeedLimits& limits, const JerkCell& at) noexcept {

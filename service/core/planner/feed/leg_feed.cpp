@@ -57,11 +57,11 @@ void turn_round(std::vector<double>& ends, double length) noexcept {
 /// asks for.
 double duration_with_room(double length, const PathLimits& limits) noexcept {
   const Profile fastest = rest_to_rest(length, limits);
-  const double v = fastest.peak_velocity(), a = fastest.peak_acceleration();
-  const double acceleration = limits.acceleration - kRateSlope_per_s * v;
-  const double jerk = limits.jerk - 0.5 * (3 * kRateSlope_per_s * a + kRateCurvature_per_s2 * v);
-  if (!(acceleration > 0) || !(jerk > 0)) return 0;
-  return rest_to_rest(length, {limits.velocity, acceleration, jerk}).duration();
+  PathLimits left =
+      limits_beside_rate(limits, fastest.peak_velocity(), fastest.peak_acceleration());
+  left.jerk = 0.5 * (limits.jerk + left.jerk);
+  if (!(left.acceleration > 0) || !(left.jerk > 0)) return 0;
+  return rest_to_rest(length, left).duration();
 }
 
 }  // namespace

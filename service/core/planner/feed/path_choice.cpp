@@ -145,6 +145,9 @@ MotionChoice choose_motion(std::span<const JointCell> cells, const JointCaps& ca
     velocity = low > 0 ? low : high / 4096;
   }
   for (const double share : {1.0, 0.75, 0.5}) {
+    const bool is_too_slow =
+        best.profile.jerk > 0 && length > share * velocity * best.profile.duration();
+    if (is_too_slow) break;
     keep_faster(try_velocity(cells, caps, length, share * velocity, rest_jerk), best);
   }
   // A short way does not reach its velocity: a lower one costs less curvature.

@@ -214,7 +214,9 @@ bool RollingFeed::refine() noexcept {
   int good = 0, trials = 0;
   for (int round = 0; round < kTightenings + wanted; ++round) {
     for (int k = 0; k <= cells; ++k) {
-      const double share = 1 - funnel * std::min(1.0, 1.0 * k / settings_.window_cells);
+      const double behind = static_cast<double>(k - settings_.commit_cells) /
+                            (settings_.window_cells - settings_.commit_cells);
+      const double share = 1 - funnel * std::clamp(behind, 0.0, 1.0);
       accel_share_[k] = jerk_share_[k] = share * grid_[new_.first + k].tight;
     }
     if (window_rounds_ >= settings_.max_rounds) break;

@@ -19,6 +19,7 @@ class StopWalk {
         law_(begin, authority),
         rest_(begin.s + law_.distance()),
         largest_product_(largest_stop_product(peak_of(begin), authority.accel, authority.jerk)),
+        largest_jerk_(authority.jerk),
         rounding_(kRounding * peak_v2_of(begin)),
         from_(begin),
         to_(begin),
@@ -39,6 +40,11 @@ class StopWalk {
   void raise_product(double other) noexcept {
     largest_product_ = std::max(largest_product_, other);
   }
+
+  /// Acceleration and jerk that bound what it does.
+  [[nodiscard]] StopMargin bounds() const noexcept { return {authority_.accel, largest_jerk_}; }
+  /// It stands for stops too that end a braking of their own by as much jerk.
+  void raise_jerk(double other) noexcept { largest_jerk_ = std::max(largest_jerk_, other); }
 
   /// Whether it is nowhere faster than `next` from where that begins: a stop of the same plan under
   /// the same authority, from `duration` later. Neither may have entered a cell yet.
@@ -103,7 +109,7 @@ class StopWalk {
 
   StopMargin authority_;
   StopLaw law_;
-  double rest_ = 0, largest_product_ = 0, rounding_ = 0;
+  double rest_ = 0, largest_product_ = 0, largest_jerk_ = 0, rounding_ = 0;
   PathState from_, to_;
   double s_ = 0;  ///< begin of the cell
   int step_ = 0;

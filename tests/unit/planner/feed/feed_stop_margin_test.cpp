@@ -80,6 +80,38 @@ TEST(FeedStopMargin, EndsBeforeThePlanDoes) {
   EXPECT_EQ(none.stop_velocity, 0);
 }
 
+/// A hold that keeps a tail comes to it at a lower rate: what is sought at 0.85 and 0.6 only.
+TEST(FeedStopMargin, IsSoughtForSlowerMachinesInATailWhereTheFullRateHasNone) {
+  Path path;
+  for (int k = 0; k < kCells; ++k) path.set(k, 1, 0.4, 0.1);
+  TimePiece tail, cut;
+  double speed = 40;
+  for (; speed < 120; ++speed) {
+    path.margin.begin(path.cells.grid, kCells - 1);
+    cut = path.grant(10, speed);
+    path.margin.begin(path.cells.grid, kCells - 1);
+    tail = path.grant(10, speed, 0, true);
+    if (tail.stop_velocity < kAnyVelocity && tail.stop_jerk > 0) break;
+  }
+  ASSERT_LT(speed, 120);
+  EXPECT_NEAR(tail.stop_velocity, 0.85 * speed, 1e-6);
+  EXPECT_LE(tail.stop_velocity, cut.stop_velocity);
+  EXPECT_GT(tail.slow_stop_jerk, 0);
+  path.expect_safe(tail);
+}
+
+/// From there every law lets go of the deceleration at once, by the one jerk that ends it at rest.
+TEST(FeedStopMargin, IsNoneWhereBrakingThatIsDeepAlreadyEndsWithMoreJerkThanThereIs) {
+  for (const double share : {0.5, 0.7, 1.05, 2.0}) {
+    SCOPED_TRACE(share);
+    Path path;
+    const double speed = 2, jerk = share * kJerk;
+    const TimePiece time = path.grant(10, speed, -std::sqrt(2 * speed * jerk), true);
+    EXPECT_EQ(time.stop_velocity == kAnyVelocity, share < 1);
+    EXPECT_GT(time.fault_jerk, 0) << "which has more jerk";
+  }
+}
+
 TEST(FeedStopMargin, IsSoughtForSlowerMachinesWhereTheFullSpeedLeavesNone) {
   Path path;
   // At 60 mm/s the bend takes all of the jerk; at 50 there is some left.
@@ -93,10 +125,11 @@ TEST(FeedStopMargin, IsSoughtForSlowerMachinesWhereTheFullSpeedLeavesNone) {
   EXPECT_LE(path.use(time, {time.stop_accel, time.stop_jerk}, false, rate).worst, 1);
   path.margin.begin(path.cells.grid, kCells - 1);
   const TimePiece tail = path.grant(20, 60, 0, true);
-  EXPECT_EQ(tail.stop_jerk, 0) << "a tail comes to rest anyway";
+  EXPECT_NEAR(tail.stop_velocity, 0.85 * 60, 1e-6)
+      << "sought coarsely: a tail comes to rest anyway";
 }
 
-TEST(FeedStopMargin, HasNothingForSlowMachinesInATail) {
+TEST(FeedStopMargin, HasNothingForSlowMachinesInATailWhereTheFullRateHasSome) {
   Path path;
   const TimePiece time = path.grant(10, 50, 0, true);
   EXPECT_NEAR(time.stop_jerk, kJerk, 1e-6);
@@ -137,10 +170,10 @@ TEST(FeedStopMargin, KeepsTheFeedWhileAccelerationIsLetGo) {
     for (CellSample& at : path.cells.grid[k].at) at.max_b = 50.5 * 50.5;
   }
   // At 1500 mm/s² a stop still gains a²/2j = 19 mm/s: in no cell is so much allowed.
-  EXPECT_EQ(path.grant(20, 50, 1500, true).stop_jerk, 0);
-  EXPECT_EQ(path.grant(19, 50, 1500, true).stop_jerk, 0) << "it reaches into the next cell";
-  EXPECT_GT(path.grant(20, 30, 1500, true).stop_jerk, 0);
-  EXPECT_GT(path.grant(12, 30, 1500, true).stop_jerk, 0);
+  EXPECT_LT(path.grant(20, 50, 1500, true).stop_velocity, 50);
+  EXPECT_LT(path.grant(19, 50, 1500, true).stop_velocity, 50) << "it reaches into the next cell";
+  EXPECT_EQ(path.grant(20, 30, 1500, true).stop_velocity, kAnyVelocity);
+  EXPECT_EQ(path.grant(12, 30, 1500, true).stop_velocity, kAnyVelocity);
 }
 
 TEST(FeedStopMargin, GrowsByAQuarterFromPieceToPieceAtMost) {

@@ -75,15 +75,20 @@ JerkTangent tangent_of(const Drawn& drawn, int j, std::size_t p) {
   const double bar = at.bar[p], slope = at.bar_slope[p], root = std::sqrt(bar);
   double jerk = drawn.limits.jerk[j] * at.jerk_share, per_slope = 0, filter_per_b = 0;
   double fixed = 1 / root;
+  RateRoom::Line rate;
   if (!std::isnan(slope)) {
     const double accel = 0.5 * sample.d1[j] * slope + sample.d2[j] * bar;
-    const double sign = accel < 0 ? -1 : 1, filter = 3 * drawn.limits.slope;
-    jerk = drawn.limits.full_jerk[j] * at.jerk_share - filter * std::abs(accel);
+    const double full = drawn.limits.full_jerk[j] * at.jerk_share;
+    rate = RateRoom::of_jerk(drawn.limits.slope, drawn.limits.curvature)
+               .tangent(full - drawn.limits.curvature * std::abs(sample.d1[j]) * root,
+                        3 * std::abs(accel));
+    const double sign = accel < 0 ? -1 : 1, filter = 3 * rate.slope / rate.share;
+    jerk = full / rate.share - filter * std::abs(accel);
     per_slope = -filter * sign * 0.5 * sample.d1[j] / root;
     filter_per_b = -filter * sign * sample.d2[j] / root;
   }
   fixed *= jerk;
-  if (!std::isnan(slope)) fixed -= drawn.limits.curvature * std::abs(sample.d1[j]);
+  if (!std::isnan(slope)) fixed -= drawn.limits.curvature / rate.share * std::abs(sample.d1[j]);
   const double per_b = -jerk / (2 * bar * root) + filter_per_b;
   return {fixed - per_b * bar - (std::isnan(slope) ? 0 : per_slope * slope), per_b, per_slope};
 }
@@ -104,12 +109,16 @@ std::vector<JerkRow> all_rows(const Drawn& drawn) {
   for (int j = 0; j < kJoints; ++j) {
     const CellSample& begin = drawn.cell.at[0];
     JerkCoefficients value{}, rest{};
-    const double root = std::sqrt(at.bar[0]), filter = drawn.limits.slope * std::abs(begin.d1[j]);
+    const double root = std::sqrt(at.bar[0]), d1 = std::abs(begin.d1[j]);
+    const double accel = drawn.limits.acceleration[j] * at.accel_share;
+    const auto rate = RateRoom::of_acceleration(drawn.limits.slope, drawn.limits.curvature)
+                          .tangent(accel, d1 * root);
+    const double filter = rate.slope / rate.share * d1;
     for (std::size_t t = 0; t < 3; ++t) {
       value[t] = 0.5 * begin.d1[j] * at.slope[t] + begin.d2[j] * at.b[t];
       rest[t] = filter / (2 * root) * at.b[t];  // the tangent of √b
     }
-    const double limit = drawn.limits.acceleration[j] * at.accel_share - 0.5 * filter * root;
+    const double limit = accel / rate.share - 0.5 * filter * root;
     if (!at.is_first) add(1, value, rest, limit), add(-1, value, rest, limit);
     for (std::size_t p = 0; p < 3; ++p) {
       const CellSample& sample = drawn.cell.at[p * 4];
@@ -202,6 +211,7 @@ TEST(JerkRows, BoundTheSlopeByTheJointThatAllowsLeast) {
   drawn.at.bar[0] = 16;
   drawn.at.max_b[0] = 10;
   drawn.limits.slope = 0.5;
+  drawn.limits.curvature = 0;
   drawn.limits.acceleration = {100, 40, 30};
   drawn.cell.at[0].d1 = {1, -0.5, 0};
   drawn.cell.at[0].d2 = {0.2, 0.1, 4};

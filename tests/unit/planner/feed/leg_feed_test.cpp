@@ -198,10 +198,10 @@ TEST(LegFeed, KnowsATimeThatNoMotionFallsBelow) {
   const double at_speed = 60 / (20 * (1 - 1e-7)) + 40.0 / 6;
   const PathLimits limits{100 / at_speed, 1000, 20000};
   const Profile fastest = rest_to_rest(100, limits);
-  const double v = fastest.peak_velocity(), a = fastest.peak_acceleration();
-  const double room = 3 * kRateSlope_per_s * a + kRateCurvature_per_s2 * v;
-  const Profile easiest = rest_to_rest(
-      100, {limits.velocity, limits.acceleration - kRateSlope_per_s * v, limits.jerk - 0.5 * room});
+  PathLimits left =
+      limits_beside_rate(limits, fastest.peak_velocity(), fastest.peak_acceleration());
+  left.jerk = 0.5 * (limits.jerk + left.jerk);
+  const Profile easiest = rest_to_rest(100, left);
   const double smallest = min_leg_time(leg, cells, caps);
   EXPECT_NEAR(smallest, easiest.duration(), 1e-9);
   EXPECT_GT(smallest, fastest.duration());

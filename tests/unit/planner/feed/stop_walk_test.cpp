@@ -132,6 +132,17 @@ TEST(StopWalk, StandsForAnotherStopToo) {
   EXPECT_EQ(walk.largest_product(), 2 * own);
 }
 
+TEST(StopWalk, HasTheJerkOfItsAuthorityOrOfAnotherStop) {
+  StopWalk walk({0, 20, -100, 0}, {500, 9000});
+  EXPECT_EQ(walk.bounds().accel, 500);
+  EXPECT_EQ(walk.bounds().jerk, 9000);
+  walk.raise_jerk(8000);
+  EXPECT_EQ(walk.bounds().jerk, 9000);
+  walk.raise_jerk(12000);
+  EXPECT_EQ(walk.bounds().jerk, 12000);
+  EXPECT_EQ(walk.authority().jerk, 9000);
+}
+
 TEST(StopWalk, BeginsInACellThatBeginsElsewhere) {
   const StopMargin authority{1000, 30000};
   StopWalk near({0.02, 40, 0, 0}, authority), far({1.02, 40, 0, 0}, authority, 1.0);
