@@ -5,17 +5,18 @@
 
 namespace meridian {
 
-/// What the rate filter of the cycle may add to q̈ and to q⃛ of a plan, at any rate w in [0, 1].
+/// What q̈ and q⃛ of a plan come to at any rate w in [0, 1] that the cycle's rate filter may have.
+/// Of q⃛ without w'' q̇, for which callers add Ω₂ |q̇|.
 ///
 /// The filter always comes to rest at w <= 1, so |w'| <= min(Ω₁, √(2Ω₂ε)) with ε = 1 - w: full
-/// |w'| never meets w = 1. With `own` = |q̈|, `below` = |q̇| (of jerk: |q⃛| and 3 |q̈|) it adds up to
+/// |w'| never meets w = 1. `own` is |q̈| or |q⃛|, `below` what w' is multiplied by, |q̇| or 3 |q̈|:
 ///
-///     max over ε of  (1-ε)ⁿ own + min(Ω₁, √(2Ω₂ε)) below,     n = 2 (of jerk: 3)
+///     max over ε of  (1-ε)ⁿ own + min(Ω₁, √(2Ω₂ε)) below,     n = 2, of jerk 3
 ///
-/// of which largest() is an upper bound: (1-ε)ⁿ <= 1 - cε where ε is no more than the ε₁ from which
-/// on |w'| may be Ω₁, with c = 2 - ε₁ (of jerk: 3 - 3ε₁). It is above by at most cε₁ of `own` less
-/// what falls, some hundredths. Units: mm, rad, s. Source: docs/motion.md, eq. 8.3. Proof:
-/// tests/unit/planner/rate_room_test.cpp.
+/// largest() is an upper bound of it: (1-ε)ⁿ <= 1 - cε where ε is no more than the ε₁ from which
+/// on |w'| may be Ω₁, with c = 2 - ε₁, of jerk 3 - 3ε₁; and the factor 1-ε that w' has in the jerk
+/// is left out. Where Ω₂ = 10 Ω₁ it is at most 0.1 % too large, of jerk 5.3 %. Units: mm, rad, s.
+/// Source: docs/motion.md, eq. 8.3. Proof: tests/unit/planner/rate_room_test.cpp.
 class RateRoom {
  public:
   /// share · own + slope · below <= limit, the tightest of these at one place.

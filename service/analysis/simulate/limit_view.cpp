@@ -75,10 +75,9 @@ LimitView LimitMap::look(const PathPiece& path, const TimePiece& piece, double p
     const double accel_used = RateRoom::of_acceleration(slope, curvature).largest(accel, velocity);
     const double jerk_used =
         RateRoom::of_jerk(slope, curvature).largest(jerk, 3 * accel) + curvature * velocity;
-    const double uses[3] = {
-        velocity / (is_smooth ? smooth_.velocity[n] : own.velocity),
-        accel_used / (is_smooth ? smooth_.acceleration[n] : own.acceleration),
-        jerk_used / own.jerk};
+    const double uses[3] = {velocity / (is_smooth ? smooth_.velocity[n] : own.velocity),
+                            accel_used / (is_smooth ? smooth_.acceleration[n] : own.acceleration),
+                            jerk_used / own.jerk};
     for (int order = 0; order < 3; ++order) {
       if (!weigh(uses[order], order == 0 ? kNearShare : kRampShare, joint_limit(i, order)))
         continue;

@@ -250,5 +250,27 @@ TEST(RateFilter, HasNoMoreSlopeThanItCanTakeBackBeforeOne) {
   }
 }
 
+/// So does a FaultStop's faster fall, for which limits beyond the others leave room.
+TEST(RateFilter, FallsNoFasterThanItsOwnSlopeAndWhatAStopAdds) {
+  std::mt19937 random(13);
+  const auto real = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  const RateBounds own{1, 10};
+  for (int n = 0; n < 2000; ++n) {
+    const double more = std::pow(10.0, real(-1, 2));
+    RateFilter filter(own);
+    filter.reset(real(0, 1));
+    filter.aim(real(0, 1) < 0.5 ? 1 : real(0, 1));
+    (void)filter.advance(real(0, 0.5));
+    filter.stop({own.slope + more, own.curvature + more * own.curvature / own.slope});
+    for (int k = 0; k < 400 && !filter.is_settled(); ++k) {
+      (void)filter.advance(1e-3);
+      const double max = std::min(own.slope, std::sqrt(2 * own.curvature * (1 - filter.rate())));
+      ASSERT_LE(std::abs(filter.slope()), max + more + 1e-6) << n << " " << filter.rate();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace meridian::test::rate_filter

@@ -71,8 +71,7 @@ TEST(Profile, LeavesTheReserveOfTheRateFilter) {
     const double reached = p.peak_velocity(), a = p.peak_acceleration();
     for (double less = 0; less <= 1; less += less < 0.06 ? 0.001 : 0.05) {  // 1 - w
       const double w = 1 - less;
-      const double slope =
-          std::min(kRateSlope_per_s, std::sqrt(2 * kRateCurvature_per_s2 * less));
+      const double slope = std::min(kRateSlope_per_s, std::sqrt(2 * kRateCurvature_per_s2 * less));
       ASSERT_LE(w * w * a + slope * reached, limits.acceleration * (1 + 1e-8));
       ASSERT_LE(w * w * w * p.jerk + 3 * w * slope * a + kRateCurvature_per_s2 * reached,
                 limits.jerk * (1 + 1e-8));

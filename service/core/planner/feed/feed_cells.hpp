@@ -162,8 +162,8 @@ class CellGrid {
   void draft_from_rest(Draft rest, double first, bool is_end, std::size_t to_come,
                        double& from_rest) noexcept;
   [[nodiscard]] PathFault make_cell(const Draft& draft) noexcept;
-  /// Whether the span of `draft` ends out of reach: a joint that jumps ahead of the edge is not the
-  /// reason then.
+  /// Whether the span of `draft` ends out of reach: a joint that jumps on the way there is not why
+  /// the block cannot be cut.
   [[nodiscard]] bool leaves_reach(const Draft& draft) const noexcept;
 
   const MachineModel& model_;

@@ -148,8 +148,7 @@ void add_use(const FeedLimits& limits, const CellSample& at, double v, double a,
     const double velocity = std::abs(at.d1[i] * v);
     const double acceleration = std::abs(at.d1[i] * a + at.d2[i] * v * v);
     const double own_jerk = std::abs(at.d1[i] * j + 3 * at.d2[i] * v * a + at.d3[i] * v * v * v);
-    const double jerk =
-        jerk_room.largest(own_jerk, 3 * acceleration) + limits.curvature * velocity;
+    const double jerk = jerk_room.largest(own_jerk, 3 * acceleration) + limits.curvature * velocity;
     use.velocity = std::max(use.velocity, velocity / limits.velocity[i]);
     use.acceleration =
         std::max(use.acceleration,

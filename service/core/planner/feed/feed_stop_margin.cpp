@@ -39,7 +39,7 @@ FeedStopMargin::FeedStopMargin(const MachineModel& model) noexcept
 
 FeedStopMargin::FeedStopMargin(const MachineModel& model, const RateLimits& rates) noexcept
     : count_(limited_count(model)),
-      slope_(rates.slope_per_s),
+      rates_(rates),
       room_(RateRoom::of_jerk(rates.slope_per_s, rates.curvature_per_s2)) {
   for (int i = 0; i < count_; ++i) {
     const JointLimits& limits = limited_spec(model, i).limits;
@@ -218,9 +218,8 @@ bool FeedStopMargin::rises_too_far(const FeedCell& cell, const PathState& begin,
 }
 
 FeedStopMargin::Motion FeedStopMargin::motion_in_cell(const StopWalk& walk,
-                                                      bool is_first) const noexcept {
+                                                      double by_rate) noexcept {
   const PathState& from = walk.from();
-  const double by_rate = is_first ? slope_ * from.ds : 0;  // of slower states
   const double rising = std::max(from.dds, 0.0) + by_rate;
   const double v2 = walk.max_v2();
   const double speed = std::sqrt(v2), v3 = v2 * speed;
@@ -241,9 +240,14 @@ bool FeedStopMargin::passes(const Caps& caps, const CellBlock& block, const Stop
          share.jerk <= std::max(1.0, use.jerk);
 }
 
-double FeedStopMargin::jerk_to_rest(const PathState& p) const noexcept {
+double FeedStopMargin::jerk_to_rest(const PathState& p, double rate) const noexcept {
   if (!(p.dds < 0) || !(p.ds > 0)) return 0;
-  return kShare * room_.largest(0.5 * p.dds * p.dds / p.ds, -p.dds);
+  // (w² s'' + w' s')²/(2 w s') = w³ s''²/2s' + w w' s'' + w'² s'/2w. Of the last, 2Ω₂ w and
+  // 2Ω₂(1-w) bound w'². At a rate of 1 w' is small, at lower ones it may be all of the slope.
+  const double own = 0.5 * p.dds * p.dds / p.ds, planned_velocity = p.ds / rate;
+  const double falling =
+      rate < 1 ? own - rates_.slope_per_s * p.dds / rate : room_.largest(own, -p.dds);
+  return kShare * (falling + rates_.curvature_per_s2 * planned_velocity);
 }
 
 FeedStopMargin::Use FeedStopMargin::use_of(const Caps& caps, const StopStretch& stretch,
@@ -252,12 +256,14 @@ FeedStopMargin::Use FeedStopMargin::use_of(const Caps& caps, const StopStretch& 
   const auto walk_from = [&](std::size_t n) {
     if (n == parts.size()) {
       StopWalk walk(stretch.end(), authority, parts.back().cell_begin);
-      walk.raise_jerk(jerk_to_rest(stretch.end()));
+      walk.raise_jerk(jerk_to_rest(stretch.end(), stretch.rate()));
       return walk;
     }
     StopWalk walk(parts[n].begin, authority, parts[n].cell_begin);
-    walk.raise_jerk(jerk_to_rest(parts[n].begin));
-    for (const PathState& between : parts[n].between) walk.raise_jerk(jerk_to_rest(between));
+    walk.raise_jerk(jerk_to_rest(parts[n].begin, stretch.rate()));
+    for (const PathState& between : parts[n].between) {
+      walk.raise_jerk(jerk_to_rest(between, stretch.rate()));
+    }
     return walk;
   };
   Use use;
@@ -265,19 +271,20 @@ FeedStopMargin::Use FeedStopMargin::use_of(const Caps& caps, const StopStretch& 
   for (std::size_t n = 0; n < parts.size() && use.is_within(); ++n) {
     StopWalk next = walk_from(n + 1);
     const bool is_below = walk.stays_below(next, parts[n].duration);
-    add_use(caps, parts[n].cell, is_below ? parts[n].cell + 1 : kNoEnd, walk, use);
+    const std::int64_t end = is_below ? parts[n].cell + 1 : kNoEnd;
+    add_use(caps, parts[n].cell, end, stretch.rate(), walk, use);
     if (is_below) {
       next.raise_product(walk.largest_product());
       next.raise_jerk(walk.bounds().jerk);
     }
     walk = next;
   }
-  if (use.is_within()) add_use(caps, parts.back().cell, kNoEnd, walk, use);
+  if (use.is_within()) add_use(caps, parts.back().cell, kNoEnd, stretch.rate(), walk, use);
   return use;
 }
 
-void FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, std::int64_t end, StopWalk walk,
-                             Use& use) const noexcept {
+void FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, std::int64_t end, double rate,
+                             StopWalk walk, Use& use) const noexcept {
   const PathState begin = walk.from();
   const double in_cell = begin.s - walk.s();
   const StopMargin authority = walk.authority();
@@ -296,7 +303,8 @@ void FeedStopMargin::add_use(const Caps& caps, std::int64_t cell, std::int64_t e
       continue;
     }
     const FeedCell& here = (*grid_)[k];
-    const Motion motion = motion_in_cell(walk, k == cell);
+    const double by_rate = k == cell ? rates_.slope_per_s * begin.ds / rate : 0;
+    const Motion motion = motion_in_cell(walk, by_rate);
     use.is_too_fast = k > cell ? motion.v2 > StopWalk::kBetweenSteps * kFast * here.max_b
                                : rises_too_far(here, begin, in_cell, authority.jerk);
     if (use.is_too_fast) return;

@@ -119,19 +119,20 @@ class FeedStopMargin {
   /// ends do: they may go farther where the plan brakes harder than they.
   [[nodiscard]] bool ends_before_plan(const StopStretch& stretch,
                                       const StopMargin& authority) const noexcept;
-  /// Jerk of a stop from `p`, or from there at a lower rate, that ends a braking which is deep
-  /// already (StopLaw): there the authority does not bound it. Less kShare, which is not for it:
-  /// the plan itself comes to rest so.
-  [[nodiscard]] double jerk_to_rest(const PathState& p) const noexcept;
+  /// Jerk of a stop from `p`, which a machine has at `rate`, or from there at a lower rate, that
+  /// ends a braking which is deep already (StopLaw): there the authority does not bound it. kShare
+  /// is taken out of it again: the plan itself may use all of the limit there.
+  [[nodiscard]] double jerk_to_rest(const PathState& p, double rate) const noexcept;
   /// The use of all stops from `stretch`, or of some that use too much.
   [[nodiscard]] Use use_of(const Caps& caps, const StopStretch& stretch,
                            const StopMargin& authority) const noexcept;
-  /// Adds the use of all stops under `walk`, which begins in `cell`, in the cells before `end`.
-  void add_use(const Caps& caps, std::int64_t cell, std::int64_t end, StopWalk walk,
+  /// Adds the use of all stops under `walk`, which begins in `cell` at `rate`, in the cells before
+  /// `end`.
+  void add_use(const Caps& caps, std::int64_t cell, std::int64_t end, double rate, StopWalk walk,
                Use& use) const noexcept;
-  /// Bounds of what stops under `walk` do in the cell that it enters, the first of them or a later
-  /// one.
-  [[nodiscard]] Motion motion_in_cell(const StopWalk& walk, bool is_first) const noexcept;
+  /// Bounds of what stops under `walk` do in the cell that it enters. `by_rate`: of s̈, what a rate
+  /// that changes adds to it where they begin.
+  [[nodiscard]] static Motion motion_in_cell(const StopWalk& walk, double by_rate) noexcept;
   /// Whether stops that brake under `walk` use no more in any cell of `block` than what is allowed
   /// or used already.
   [[nodiscard]] bool passes(const Caps& caps, const CellBlock& block, const StopWalk& walk,
@@ -142,8 +143,8 @@ class FeedStopMargin {
   [[nodiscard]] Cause cause_of(const Caps& caps, const Use& use) const noexcept;
 
   int count_ = 0;
-  double slope_ = 0;  ///< of the rate, 1/s
-  RateRoom room_;     ///< of jerk
+  RateLimits rates_;
+  RateRoom room_;  ///< of jerk
   Search hold_, fault_;
   const CellGrid* grid_ = nullptr;
   std::int64_t rest_cell_ = 0;

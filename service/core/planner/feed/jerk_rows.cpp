@@ -15,8 +15,7 @@ constexpr double kTiniest = 1e-300;
 struct LimitLine {
   double per_b = 0, limit = 0;
 };
-LimitLine limit_line(const RateRoom& room, double limit, double d1,
-                                   double bar) noexcept {
+LimitLine limit_line(const RateRoom& room, double limit, double d1, double bar) noexcept {
   const double root = std::sqrt(bar), rate = std::abs(d1);
   const auto [share, slope] = room.tangent(limit, rate * root);
   const double filter = slope * rate / share;
@@ -56,8 +55,7 @@ void JerkRows::add_acceleration(const FeedLimits& limits, const JerkCell& at) no
   const RateRoom room = limits.acceleration_room();
   for (int j = 0; j < limits.count; ++j) {
     const double d1 = sample.d1[j], d2 = sample.d2[j];
-    const LimitLine line =
-        limit_line(room, limits.acceleration[j] * at.accel_share, d1, at.bar[0]);
+    const LimitLine line = limit_line(room, limits.acceleration[j] * at.accel_share, d1, at.bar[0]);
     const double largest =
         0.5 * std::abs(d1) * at.max_slope + (std::abs(d2) + line.per_b) * at.max_b[0];
     if (largest <= line.limit && j != at.slope_joint) continue;

@@ -63,8 +63,7 @@ class JerkRows {
     double per_accel = 0, per_b = 0, limit = 0;
   };
   [[nodiscard]] static JerkLine line_at(const FeedLimits& limits, const RateRoom& room,
-                                        const RowSample& sample, int joint,
-                                        double share) noexcept;
+                                        const RowSample& sample, int joint, double share) noexcept;
   [[nodiscard]] static double rest_of(const JerkLine& line, const RowSample& sample,
                                       int joint) noexcept;
   void add(const JerkCoefficients& a, double limit) noexcept;

@@ -40,6 +40,7 @@ StopStretch StopStretch::at_rate(double rate) const noexcept {
     for (PathState& at : part.between) at = slowed(at, rate);
   }
   out.end_ = slowed(end_, rate);
+  out.rate_ = rate * rate_;
   return out;
 }
 

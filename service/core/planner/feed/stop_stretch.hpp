@@ -32,6 +32,8 @@ struct StopStretch {
 
   /// Of a machine that runs through it at another rate of plan time.
   [[nodiscard]] StopStretch at_rate(double rate) const noexcept;
+  /// The rate at which the machine runs through it: 1 is as planned.
+  [[nodiscard]] double rate() const noexcept { return rate_; }
 
   [[nodiscard]] std::span<const Part> parts() const noexcept { return {parts_.data(), count_}; }
   /// State at the end of the last part.
@@ -46,6 +48,7 @@ struct StopStretch {
   std::array<Part, kMaxParts> parts_{};
   std::size_t count_ = 0;
   PathState end_;
+  double rate_ = 1;
 };
 
 }  // namespace meridian

@@ -99,6 +99,7 @@ struct Beside {
 };
 
 TEST(FeedRounding, LeavesARobotRoomForWhatYawAndRollShowBesideBothSingularities) {
+  int compared = 0;
   for (const double beside_mm : {0.012, 0.03, 1.0}) {
     for (const double bend_rad : {0.002, -0.002, 0.01, 0.3}) {
       for (const double origin_mm : {0.0, 850.0}) {
@@ -106,11 +107,13 @@ TEST(FeedRounding, LeavesARobotRoomForWhatYawAndRollShowBesideBothSingularities)
         const Beside beside(beside_mm, bend_rad, origin_mm);
         const double room = 1 - beside.share();
         if (room == 1 - kMinTight) continue;
+        ++compared;
         EXPECT_LT(beside.shown(), room);
         EXPECT_LT(room, 15 * beside.shown()) << "not much more than that";
       }
     }
   }
+  EXPECT_GT(compared, 15);
   EXPECT_GT(Beside(0.012, 0.002).shown(), 0.01);
 }
 

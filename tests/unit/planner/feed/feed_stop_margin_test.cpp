@@ -112,6 +112,35 @@ TEST(FeedStopMargin, IsNoneWhereBrakingThatIsDeepAlreadyEndsWithMoreJerkThanTher
   }
 }
 
+/// A hold that finds nothing at the full rate comes to a lower one with the rate falling as fast as
+/// it may: that adds to the deceleration, and so to the jerk that ends it.
+TEST(FeedStopMargin, KeepsTheJerkOfDeepBrakingWhereTheRateFalls) {
+  constexpr double kRateSlope = 1, kFullJerk = kJerk / 0.99;
+  int granted = 0;
+  for (double share = 0.8; share < 4; share *= 1.02) {
+    for (const double speed : {2.0, 10.0, 50.0}) {
+      SCOPED_TRACE(testing::Message() << share << " " << speed);
+      Path path;
+      const double a = -std::sqrt(2 * speed * share * kJerk);
+      const TimePiece time = path.grant(10, speed, a);
+      const PathState end = state_at(time, time.duration);
+      if (!(end.ds > 0)) continue;
+      const auto expect_kept = [&](double velocity, const StopMargin& margin) {
+        if (!(margin.jerk > 0)) return;
+        for (double w = std::min(1.0, velocity / end.ds); w > 0.02; w *= 0.9) {
+          const double slope = std::min(kRateSlope, std::sqrt(20 * (1 - w)));
+          const StopLaw law({0, w * end.ds, w * w * end.dds - slope * end.ds, 0}, margin);
+          EXPECT_LE(law.at(0.9 * law.duration()).ddds, kFullJerk * (1 + 1e-9)) << w;
+          ++granted;
+        }
+      };
+      expect_kept(time.stop_velocity, {time.stop_accel, time.stop_jerk});
+      expect_kept(time.slow_velocity, {time.slow_stop_accel, time.slow_stop_jerk});
+    }
+  }
+  EXPECT_GT(granted, 100);
+}
+
 TEST(FeedStopMargin, IsSoughtForSlowerMachinesWhereTheFullSpeedLeavesNone) {
   Path path;
   // At 60 mm/s the bend takes all of the jerk; at 50 there is some left.

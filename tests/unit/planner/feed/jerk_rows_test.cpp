@@ -223,6 +223,10 @@ TEST(JerkRows, BoundTheSlopeByTheJointThatAllowsLeast) {
   bound_slope(drawn.limits, drawn.at);
   EXPECT_EQ(drawn.at.slope_joint, 0);
   EXPECT_DOUBLE_EQ(drawn.at.max_slope, 62);
+  drawn.limits.curvature = 10;  // less room for the rate, so more slope
+  bound_slope(drawn.limits, drawn.at);
+  EXPECT_GT(drawn.at.max_slope, 63.4);
+  EXPECT_LT(drawn.at.max_slope, 64);
 }
 
 TEST(JerkRows, KeepThoseOfTheJointThatBoundsTheSlope) {

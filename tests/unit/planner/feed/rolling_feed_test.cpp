@@ -37,6 +37,27 @@ TEST(RollingFeed, RunsAStraightPathHardlySlowerThanItsLimitsAllow) {
   EXPECT_GT(use.jerk, 0.9);
 }
 
+/// Less of the limits is planned in the tail alone, so that the next window has a way on.
+TEST(RollingFeed, UsesAllOfTheAccelerationInTheCellsThatStand) {
+  Rolled rolled;
+  rolled.add_straight(40, 2, 10);
+  rolled.run();
+  int checked = 0;
+  double begin = 0;
+  for (const RolledWindow& window : rolled.windows) {
+    for (const FeedPiece& piece : window.committed) {
+      const PathState state = state_on(piece, 0.5);
+      // There it is constant, before the window prepares to brake.
+      if (begin > 1.5 && begin < 2.9) {
+        EXPECT_GT(state.dds, 2996) << begin << ": 0.999 of 3000 is planned";
+        ++checked;
+      }
+      begin += state_on(piece, 1).s - state_on(piece, 0).s;
+    }
+  }
+  EXPECT_GT(checked, 5);
+}
+
 TEST(RollingFeed, KeepsEveryLimitOnABentPathAndUsesThem) {
   for (const double feed : {20.0, 1000.0}) {
     for (const int refinements : {1, 2}) {
