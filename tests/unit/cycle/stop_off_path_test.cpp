@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,7 +14,8 @@ namespace meridian::test::off_path {
 namespace {
 
 TEST(StopOffPath, OffThePathJointsRestTogetherOnTheirLinesInsideTheirFaultLimits) {
-  const MachineModel machine = machine_with_faults(2);
+  MachineModel machine = machine_with_faults(2);
+  for (JointSpec& joint : machine.joints) joint.limits.fault_acceleration *= 0.2;  // it binds
   const JointVector at{10, 20, 30, 0.5, -0.5};
   JointVector velocity{};
   for (std::size_t i = 0; i < 5; ++i) {
@@ -24,8 +26,8 @@ TEST(StopOffPath, OffThePathJointsRestTogetherOnTheirLinesInsideTheirFaultLimits
   ASSERT_EQ(state.stop.mode, StopMode::kOffPath);
   const double duration = duration_of(state.stop), dt = duration / 2000;
   ASSERT_GT(duration, 0.01);
-  double used = 0;
-  JointVector before = velocity;
+  double used = 0, used_jerk = 0;
+  JointVector before = velocity, earlier = velocity;
   for (int n = 1; n <= 2000; ++n) {
     state.stop.time = n * dt;
     put_off_path(state, machine.joint_count);
@@ -35,13 +37,57 @@ TEST(StopOffPath, OffThePathJointsRestTogetherOnTheirLinesInsideTheirFaultLimits
       EXPECT_NEAR(state.joints[i] - at[i], share * (state.joints[0] - at[0]), 1e-9);
       const double accel = std::abs(state.velocity[i] - before[i]) / dt;
       used = std::max(used, accel / machine.joints[i].limits.fault_acceleration);
+      const double jerk = std::abs(state.velocity[i] - 2 * before[i] + earlier[i]) / (dt * dt);
+      if (n > 1) used_jerk = std::max(used_jerk, jerk / machine.joints[i].limits.fault_jerk);
     }
+    earlier = before;
     before = state.velocity;
   }
   EXPECT_TRUE(is_stop_over(state.stop));
   EXPECT_EQ(state.velocity[0], 0);
   EXPECT_LE(used, 1 + 1e-9);
-  EXPECT_GT(used, 0.5) << "and as soon as they can";
+  EXPECT_GT(used, 0.999) << "and as soon as they can";
+  EXPECT_LE(used_jerk, 1 + 1e-6);
+  EXPECT_GT(used_jerk, 0.99);
+}
+
+/// Where the drives of a stage have less than the joints, the stop lasts as long as they need.
+TEST(StopOffPath, OffThePathTheDrivesOfAStageKeepTheirFaultLimitsToo) {
+  for (const bool is_jerk_tight : {false, true}) {
+    MachineModel machine = hybrid_machine();
+    for (JointSpec& joint : machine.joints) {
+      joint.limits.fault_acceleration = 1e7;
+      joint.limits.fault_jerk = 1e10;
+    }
+    for (JointSpec& drive : machine.stage_drives) {
+      drive.limits.fault_acceleration = is_jerk_tight ? 1e6 : 800;
+      drive.limits.fault_jerk = is_jerk_tight ? 40'000 : 1e9;
+    }
+    const JointVector at{20, 30, 200, 0.2, 0.3}, velocity{15, -10, 12, 0.02, 0.03};
+    CycleState state;
+    state.stop = stop_off_path(machine, at, velocity);
+    constexpr int kSteps = 400;
+    const double dt = duration_of(state.stop) / kSteps;
+    ASSERT_GT(dt, 1e-6);
+    std::array<LimitedVector, kSteps + 1> drives;
+    for (int n = 0; n <= kSteps; ++n) {
+      state.stop.time = n * dt;
+      put_off_path(state, machine.joint_count);
+      drives[static_cast<std::size_t>(n)] = limited_of(machine, state.joints);
+    }
+    double used = 0;
+    for (int i = machine.joint_count; i < limited_count(machine); ++i) {
+      const JointLimits& limits = limited_spec(machine, i).limits;
+      for (std::size_t n = 3; n < drives.size(); ++n) {
+        const auto q = [&](std::size_t back) { return drives[n - back][i]; };
+        const double accel = std::abs(q(0) - 2 * q(1) + q(2)) / (dt * dt);
+        const double jerk = std::abs(q(0) - 3 * q(1) + 3 * q(2) - q(3)) / (dt * dt * dt);
+        used = std::max({used, accel / limits.fault_acceleration, jerk / limits.fault_jerk});
+      }
+    }
+    EXPECT_LE(used, 1 + 1e-3) << is_jerk_tight;
+    EXPECT_GT(used, 0.9) << is_jerk_tight;
+  }
 }
 
 TEST(StopOffPath, OffThePathItIsOverAtOnceWhereNothingMoves) {
