@@ -54,8 +54,7 @@ double robot_share(const MachineModel& model, const FeedLimits& limits, const Pa
   const bool drives_both = path.is_free_driven && (path.branch & robot::kYawAndRollDriven) != 0;
   const double yaw =
       driven == robot::kYaw ? 0 : noise_at(kAxisNoise * reach, distance, robot::kShoulderHold_mm);
-  const double period_s = static_cast<double>(model.cycle_ns) * 1e-9;
-  const double gain = 8 / (period_s * period_s * period_s);
+  const double gain = noise_gain(static_cast<double>(model.cycle_ns) * 1e-9);
   double share = 1 - gain * yaw / limits.jerk[robot::kYaw];
   if (has_wrist_roll(model) && driven != robot::kRoll && !drives_both) {
     const double bend = std::abs(std::sin(joints[robot::kBend]));

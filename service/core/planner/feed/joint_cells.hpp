@@ -17,6 +17,10 @@ inline constexpr double kTravelMargin = 1e-9;  ///< rounding of a travel end tha
 inline constexpr double kSampledShare = 0.998;
 /// Rounding of a component of the tool axis.
 inline constexpr double kAxisNoise = 0.5 * std::numeric_limits<double>::epsilon();
+/// Jerk that 1 rad of noise shows as: a third difference weighs four setpoints by 1, 3, 3, 1.
+[[nodiscard]] constexpr double noise_gain(double cycle_s) noexcept {
+  return 8 / (cycle_s * cycle_s * cycle_s);
+}
 
 /// Bounds of |dq/ds|, |d²q/ds²|, |d³q/ds³| of everything that has limits on a short stretch of
 /// path: the joints, then the drives of the stage.

@@ -15,14 +15,9 @@ constexpr double kUnlimited = 1e12;  // a path along which no joint moves has no
 /// Third differences are checked down to this cycle time.
 constexpr double kShortestCycle_s = 250e-6;
 
-/// Jerk that 1 rad of noise shows as: a third difference weighs four setpoints by 1, 3, 3, 1.
-double noise_gain(const MachineModel& model) noexcept {
-  const double cycle = std::min(kShortestCycle_s, static_cast<double>(model.cycle_ns) * 1e-9);
-  return 8 / (cycle * cycle * cycle);
-}
-
 void set_noise_gain(const MachineModel& model, double reach_mm, JointCaps& caps) noexcept {
-  const double gain = noise_gain(model);
+  const double gain =
+      noise_gain(std::min(kShortestCycle_s, static_cast<double>(model.cycle_ns) * 1e-9));
   for (int i = 0; i < model.joint_count; ++i) {
     if (!model.joints[i].is_rotary) caps.noise_gain[i] = gain * reach_mm;
   }
