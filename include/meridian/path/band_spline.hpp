@@ -16,8 +16,8 @@ struct BandTolerance {
   double tip_mm = 0.01;        ///< >= 0.001
   double axis_rad = 1.745e-3;  ///< >= 1e-4, against the great circle between block axes
   /// Direction of the pole in W, where the machine has one that relaxes the axis: within 0.02 rad
-  /// of it, or of its opposite, the band keeps to half of `axis_rad` and leaves the rest to the
-  /// axis deviation.
+  /// of it, or of its opposite, the band keeps to half of `axis_rad`, on it to 0.9, and leaves the
+  /// rest to the axis deviation.
   std::optional<Array3> pole;
 };
 

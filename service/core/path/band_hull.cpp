@@ -138,8 +138,7 @@ double bound_by_points(const BandPolyline& line, const PoseQuartic& quartic, dou
     const bool is_inner = i + 1 < line.last() && b.u < end;
     const double to = is_inner ? b.u : end;
     const Squares after = difference_at(powers, to - begin, is_inner ? b.x : line.at(to, i));
-    if (known == nullptr || b.is_of_arc != known->is_of_arc ||
-        b.is_near_pole != known->is_near_pole) {
+    if (known == nullptr || b.is_of_arc != known->is_of_arc || b.side != known->side) {
       scale = scale_of(line, b);
       max = {std::max(max.tip, scale.tip), std::max(max.axis, scale.axis)};
       known = &b;

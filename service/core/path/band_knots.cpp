@@ -34,8 +34,7 @@ double gap_by_density(const BandPolyline& line, std::int64_t i) noexcept {
 double mean_deviation(const BandPolyline& line, std::int64_t before, std::int64_t from,
                       std::int64_t to, double gap) noexcept {
   const BandVertex &low = line[from], &high = line[to];
-  const bool is_near_pole = high.near_pole != line[before].near_pole;
-  const double axis_tolerance = (is_near_pole ? kPoleShare : 1.0) * line.tolerance().axis_rad;
+  const double axis_tolerance = line.axis_tolerance_between(line[before], high);
   const double tip = (high.tip_turns - low.tip_turns) / line.tolerance().tip_mm;
   const double axis = (high.axis_turns - low.axis_turns) / axis_tolerance;
   return kCorner * gap * std::max(tip, axis);
@@ -62,7 +61,7 @@ bool is_straight(const BandPolyline& line, std::int64_t i, double gap) noexcept 
 
 /// Largest gap that needs no look at the blocks: the polyline is 1-Lipschitz in u.
 double min_gap(const BandTolerance& tolerance) noexcept {
-  const double axis_tolerance = (tolerance.pole ? kPoleShare : 1.0) * tolerance.axis_rad;
+  const double axis_tolerance = (tolerance.pole ? kBesidePoleShare : 1.0) * tolerance.axis_rad;
   return kMeanShare / kSpread * std::min(tolerance.tip_mm, kAxisLength_mm_per_rad * axis_tolerance);
 }
 

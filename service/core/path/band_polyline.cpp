@@ -16,7 +16,7 @@ constexpr double kChordShare = 0.02;
 /// Share of the tolerances that is kept for points dropped (kMinStep_mm), for the chord of the
 /// axis instead of its arc and for the parameter of the two (docs/motion.md, 1.1).
 constexpr double kReserve = 0.002;
-/// Within this angle of the pole the band has kPoleShare of the axis tolerance.
+/// Within this angle of the pole the band has kBesidePoleShare of the axis tolerance.
 constexpr double kPoleReach_rad = 0.02;
 constexpr double kLargestTurn_rad = 0.052;  // 3 deg
 
@@ -71,7 +71,7 @@ void BandPolyline::begin(const ToolPose& pose, const BandTolerance& tolerance) n
   is_finished_ = false;
   piece_.reset();
   pose_ = pose;
-  pattern_ = {};
+  pattern_ = BandVertex{};
   BandVertex first;
   first.x = join(pose);
   ring_.push(first);
@@ -146,10 +146,11 @@ void BandPolyline::add(const ToolPose& pose, bool ends_block) noexcept {
   }
   next.u = before.u + std::sqrt(square);
   next.ends_block = ends_block;
-  next.is_near_pole = tolerance_.pole &&
-                      comes_near(to_vector(*tolerance_.pole), axis_of(before.x), axis_of(next.x));
-  next.near_pole = before.near_pole;
-  if (next.is_near_pole) ++next.near_pole;
+  next.side = find_side(before.x, next.x);
+  next.beside_pole = before.beside_pole;
+  next.on_pole = before.on_pole;
+  if (next.side == PoleSide::kBeside) ++next.beside_pole;
+  if (next.side == PoleSide::kOn) ++next.on_pole;
   next.tip_turns = before.tip_turns;
   next.axis_turns = before.axis_turns;
   if (last() > 0) {
@@ -159,6 +160,36 @@ void BandPolyline::add(const ToolPose& pose, bool ends_block) noexcept {
     next.axis_turns += (axis / forth - (axis_of(before.x) - axis_of(earlier.x)) / back).norm();
   }
   ring_.push(next);
+}
+
+PoleSide BandPolyline::find_side(const Vector6& from, const Vector6& to) const noexcept {
+  if (!tolerance_.pole) return PoleSide::kFar;
+  const Vector3 pole = to_vector(*tolerance_.pole);
+  if (!comes_near(pole, axis_of(from), axis_of(to))) return PoleSide::kFar;
+  const double on_pole = kOnPole_tolerances * tolerance_.axis_rad;
+  const double off = std::max(axis_of(from).cross(pole).norm(), axis_of(to).cross(pole).norm());
+  return off < on_pole ? PoleSide::kOn : PoleSide::kBeside;
+}
+
+double BandPolyline::axis_share_of(PoleSide side) noexcept {
+  switch (side) {
+    case PoleSide::kBeside:
+      return kBesidePoleShare;
+    case PoleSide::kOn:
+      return kOnPoleShare;
+    case PoleSide::kFar:
+      break;
+  }
+  return 1;
+}
+
+double BandPolyline::axis_tolerance_between(const BandVertex& before,
+                                            const BandVertex& to) const noexcept {
+  static_assert(2 * kVertexReach + 1 < 1 << 13, "the counts of BandVertex come round");
+  PoleSide side = PoleSide::kFar;
+  if (to.on_pole != before.on_pole) side = PoleSide::kOn;
+  if (to.beside_pole != before.beside_pole) side = PoleSide::kBeside;
+  return axis_share_of(side) * tolerance_.axis_rad;
 }
 
 std::int64_t BandPolyline::find_after(double u, std::int64_t low) const noexcept {

@@ -29,13 +29,18 @@ inline constexpr double kMinStep_mm = 1e-6;
 /// be there: as far as a corner is felt at the widest gaps (docs/motion.md, 1.5).
 inline constexpr double kSpeedReach_mm = 5;
 
-/// Of the axis tolerance beside the pole of a machine that relaxes the axis; the rest is left to
-/// the axis deviation.
-inline constexpr double kPoleShare = 0.5;
+/// Of the axis tolerance beside the pole of a machine that relaxes the axis, and on it: within
+/// kOnPole_tolerances. The rest is left to the axis deviation, which needs little on the pole.
+inline constexpr double kBesidePoleShare = 0.5;
+inline constexpr double kOnPoleShare = 0.9;
+inline constexpr double kOnPole_tolerances = 0.95;
+
+/// Where a segment lies, of a machine that relaxes the axis.
+enum class PoleSide : std::uint32_t { kFar, kBeside, kOn };
 
 /// One corner of the CL polyline with the segment that ends in it. The store is most of a planner's
 /// memory: what follows from little is not kept.
-// Flags: of one segment, packed into the word of `near_pole`; each combination occurs.
+// Flags: of one segment, packed into the word of the counts; each combination occurs.
 struct BandVertex {
   Vector6 x{};            ///< tip, axis
   double u = 0;           ///< chord length from the begin
@@ -49,8 +54,9 @@ struct BandVertex {
   double asked_rad_per_s = 0;  ///< the same of the axis
   std::uint64_t sequence = 0;
   std::uint32_t line = 0;
-  std::uint32_t near_pole : 28 = 0;   ///< segments near the pole up to the one that ends here
-  bool is_near_pole : 1 = false;      ///< the segment is
+  std::uint32_t beside_pole : 14 = 0;  ///< segments beside the pole up to the one that ends here
+  std::uint32_t on_pole : 13 = 0;      ///< and on it, both modulo more than a knot depends on
+  PoleSide side : 2 = PoleSide::kFar;  ///< the segment's
   bool is_short_in_time : 1 = false;  ///< of a block in inverse time, no longer than tolerances are
   bool is_of_arc : 1 = false;         ///< the segment is a chord
   bool ends_block : 1 = false;
@@ -80,8 +86,12 @@ class BandPolyline {
   [[nodiscard]] static double share_of(const BandVertex& vertex) noexcept;
   /// Of the axis on that segment, rad.
   [[nodiscard]] double axis_tolerance_of(const BandVertex& vertex) const noexcept {
-    return vertex.is_near_pole ? kPoleShare * tolerance_.axis_rad : tolerance_.axis_rad;
+    return axis_share_of(vertex.side) * tolerance_.axis_rad;
   }
+  /// The least of the segments behind vertex `before` as far as vertex `to`, rad; no more of them
+  /// than a knot depends on.
+  [[nodiscard]] double axis_tolerance_between(const BandVertex& before,
+                                              const BandVertex& to) const noexcept;
   [[nodiscard]] const BandVertex& operator[](std::int64_t i) const noexcept { return ring_[i]; }
   [[nodiscard]] BandVertex& operator[](std::int64_t i) noexcept { return ring_[i]; }
   [[nodiscard]] std::int64_t first() const noexcept { return ring_.begin_index(); }
@@ -102,6 +112,8 @@ class BandPolyline {
   [[nodiscard]] std::int64_t find_first(std::int64_t low, Is is_it) const noexcept;
   void take_feed(const ClBlock& block) noexcept;
   void add(const ToolPose& pose, bool ends_block) noexcept;
+  [[nodiscard]] PoleSide find_side(const Vector6& from, const Vector6& to) const noexcept;
+  [[nodiscard]] static double axis_share_of(PoleSide side) noexcept;
 
   IndexRing<BandVertex> ring_;
   BandTolerance tolerance_;

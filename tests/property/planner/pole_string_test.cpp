@@ -250,6 +250,30 @@ TEST(PoleString, TakesLittleMoreThanTheLeastTimeOfTheCorridor) {
   EXPECT_LE(far, paths / 5);
 }
 
+/// The axis at random inside the tolerance, at every block another: on the pole all the time.
+TEST(PoleString, AnAxisThatWaversInsideItsToleranceTakesTheTimeOfOneOnThePole) {
+  const MachineModel model = lai_machine();
+  for (const std::uint32_t seed : {1U, 2U, 3U}) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::mt19937 engine(seed);
+    std::uniform_real_distribution<double> share(-1, 1);
+    Draw on_pole, wavers;
+    on_pole.step_mm = wavers.step_mm = 0.5;
+    on_pole.axes.resize(draws(200));
+    for (std::size_t n = 0; n < on_pole.axes.size(); ++n) {
+      const double size = 0.9 * kTolerance_rad / std::sqrt(2.0), x = size * share(engine);
+      wavers.axes.push_back({x, size * share(engine)});
+    }
+    const double on_pole_s = cut(model, program_of(on_pole, 0)).duration_s();
+    const SmoothTrace trace = cut(model, program_of(wavers, 0));
+    ASSERT_EQ(trace.last.status, PlanStatus::kOk);
+    check(model, program_of(wavers, 0), trace);
+    std::printf("wavers inside 0.9 tolerances: %.3f s, on the pole %.3f s\n", trace.duration_s(),
+                on_pole_s);
+    EXPECT_LT(trace.duration_s(), 1.06 * on_pole_s);
+  }
+}
+
 TEST(PoleString, IsNeverSlowerThanTheExactPolicy) {
   const MachineModel relaxed = bench_machine();
   MachineModel exact = relaxed;
