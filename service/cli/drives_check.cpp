@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "service/cli/commands.hpp"
-#include "service/drives/simulated/check_wire.hpp"
-#include "service/drives/simulated/drive_check.hpp"
+#include "service/drives/simulated/check/check_wire.hpp"
+#include "service/drives/simulated/check/drive_check.hpp"
 #include "service/transport/reader.hpp"
 
 namespace meridian::cli {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/drives/simulated/drive_check.hpp"
+#include "service/drives/simulated/check/drive_check.hpp"
 #include "service/transport/participant.hpp"
 
 namespace meridian::cli {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "service/host/probe/doctor.hpp"
+#include "service/host/probe/doctor/doctor.hpp"
 
 namespace meridian::cli {
 

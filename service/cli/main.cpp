@@ -5,7 +5,7 @@
 
 #include "service/cli/commands.hpp"
 #include "service/text/printable.hpp"
-#include "service/transport/dds_log.hpp"
+#include "service/transport/cyclone/dds_log.hpp"
 
 namespace {
 

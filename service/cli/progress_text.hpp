@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "service/protocol/progress.hpp"
+#include "service/protocol/station/progress.hpp"
 
 namespace meridian::cli {
 

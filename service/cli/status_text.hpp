@@ -6,7 +6,7 @@
 
 #include "meridian/cycle/state.hpp"
 #include "meridian/geometry/vector3.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::cli {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "service/daemon/service.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::interpolator {
 

@@ -12,11 +12,11 @@
 #include "service/daemon/notify.hpp"
 #include "service/daemon/service.hpp"
 #include "service/machine/file/machine_file.hpp"
-#include "service/machine/file/service_file.hpp"
+#include "service/machine/file/sections/service_file.hpp"
 #include "service/recording/telemetry/flight_recorder.hpp"
 #include "service/recording/telemetry/log.hpp"
 #include "service/text/whole_file.hpp"
-#include "service/transport/dds_log.hpp"
+#include "service/transport/cyclone/dds_log.hpp"
 
 namespace meridian::interpolator {
 namespace {

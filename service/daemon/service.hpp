@@ -22,14 +22,14 @@
 #include "service/daemon/threads/publisher.hpp"
 #include "service/daemon/threads/realtime.hpp"
 #include "service/daemon/threads/telemetry_thread.hpp"
-#include "service/machine/file/homing_file.hpp"
-#include "service/machine/file/monitoring_file.hpp"
-#include "service/machine/file/service_file.hpp"
+#include "service/machine/file/sections/homing_file.hpp"
+#include "service/machine/file/sections/monitoring_file.hpp"
+#include "service/machine/file/sections/service_file.hpp"
 #include "service/recording/telemetry/audit_log.hpp"
-#include "service/recording/telemetry/set_up_file.hpp"
+#include "service/recording/telemetry/journal/set_up_file.hpp"
 #include "service/recording/trace/tracer.hpp"
+#include "service/transport/cyclone/stalled_reader.hpp"
 #include "service/transport/participant.hpp"
-#include "service/transport/stalled_reader.hpp"
 
 namespace meridian::interpolator {
 

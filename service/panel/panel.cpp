@@ -6,14 +6,14 @@
 #include <thread>
 #include <utility>
 
-#include "service/panel/costly_parts.hpp"
 #include "service/panel/desks/action_desk.hpp"
 #include "service/panel/desks/operator_desk.hpp"
 #include "service/panel/desks/program_desk.hpp"
-#include "service/panel/machine_watch.hpp"
 #include "service/panel/serve/hub.hpp"
 #include "service/panel/serve/operator_pages.hpp"
 #include "service/panel/serve/server.hpp"
+#include "service/panel/status/costly_parts.hpp"
+#include "service/panel/status/machine_watch.hpp"
 
 namespace meridian::panel {
 namespace {

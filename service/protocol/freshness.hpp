@@ -9,7 +9,7 @@
 
 #include "meridian/cycle/cycle_data.hpp"
 #include "meridian/cycle/state.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::stream {
 

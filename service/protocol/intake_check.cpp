@@ -7,7 +7,7 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/tip_over_base.hpp"
-#include "service/protocol/smooth_tolerances.hpp"
+#include "service/protocol/station/smooth_tolerances.hpp"
 
 namespace meridian::stream {
 

@@ -11,7 +11,7 @@
 #include "meridian/path/cl_block.hpp"
 #include "service/protocol/block_check.hpp"
 #include "service/protocol/session_phase.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::stream {
 

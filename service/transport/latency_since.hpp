@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::dds {
 

@@ -9,8 +9,8 @@
 #include <mutex>
 
 #include "dds_transport.hpp"
-#include "service/transport/loopback_sockets.hpp"
-#include "service/transport/network_config.hpp"
+#include "service/transport/cyclone/loopback_sockets.hpp"
+#include "service/transport/cyclone/network_config.hpp"
 
 namespace meridian::dds {
 namespace {

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <string>
 
+#include "service/transport/cyclone/write_cdr.h"
 #include "service/transport/entity.hpp"
-#include "service/transport/write_cdr.h"
 
 namespace meridian::dds {
 namespace {

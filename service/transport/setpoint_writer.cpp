@@ -8,9 +8,9 @@
 #include <cstring>
 #include <type_traits>
 
-#include "service/transport/convert.hpp"
+#include "service/transport/convert/convert.hpp"
+#include "service/transport/cyclone/warm_pools.hpp"
 #include "service/transport/entity.hpp"
-#include "service/transport/warm_pools.hpp"
 
 namespace meridian::dds {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/participant.hpp"
 #include "service/transport/writer.hpp"
 

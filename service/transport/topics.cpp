@@ -5,7 +5,7 @@
 #include <array>
 #include <string>
 
-#include "service/transport/convert.hpp"
+#include "service/transport/convert/convert.hpp"
 #include "service/transport/entity.hpp"
 #include "service/transport/reader.hpp"
 #include "service/transport/writer.hpp"

@@ -21,7 +21,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/host/probe/budgets.hpp"
 #include "service/machine/file/machine_file.hpp"
-#include "service/machine/inspect/skeleton.hpp"
+#include "service/machine/inspect/picture/skeleton.hpp"
 #include "support/cpu_time.hpp"
 
 namespace meridian {

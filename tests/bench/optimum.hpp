@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "bench/smooth_workload.hpp"
-#include "service/core/planner/feed/feed_rest.hpp"
-#include "service/core/planner/feed/jerk_step.hpp"
-#include "service/core/planner/feed/rolling_feed.hpp"
-#include "service/core/planner/feed/two_pass.hpp"
-#include "service/core/planner/singular/pole_corridor.hpp"
-#include "service/core/planner/singular/robot_passes.hpp"
+#include "service/core/planner/feed/cells/feed_rest.hpp"
+#include "service/core/planner/feed/rolling/rolling_feed.hpp"
+#include "service/core/planner/feed/solver/jerk_step.hpp"
+#include "service/core/planner/feed/solver/two_pass.hpp"
+#include "service/core/planner/singular/pole/pole_corridor.hpp"
+#include "service/core/planner/singular/robot/robot_passes.hpp"
 
 /// The least time over a smooth path, jerk included: the whole path in one window, linearised again
 /// until nothing is gained, cells half as long. What the rolling planner takes is held against it.

@@ -15,7 +15,7 @@
 #include "meridian/planner/motion_port.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
 #include "property/path/hostile_path.hpp"
-#include "service/core/planner/feed/feed_raise.hpp"
+#include "service/core/planner/feed/rolling/feed_raise.hpp"
 #include "service/core/planner/look_ahead/smooth_run.hpp"
 #include "support/cpu_time.hpp"
 #include "support/dense_block.hpp"

@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "corpus/simulated_file.hpp"
-#include "service/programs/cl/run_cl.hpp"
+#include "service/programs/cl/interpreter/run_cl.hpp"
 
 namespace meridian {
 namespace {

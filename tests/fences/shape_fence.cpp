@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <regex>
 #include <string_view>
@@ -234,6 +235,16 @@ std::vector<Finding> find_flags(const std::vector<SourceFile>& files) {
       findings.push_back(
           {file.path, shape.line, std::to_string(shape.flags) + " flags: " + shape.head});
     }
+  }
+  return findings;
+}
+
+std::vector<Finding> find_crowded_folders(const std::vector<SourceFile>& files) {
+  std::map<std::string, int> counts;
+  for (const SourceFile& file : files) ++counts[file.path.substr(0, file.path.rfind('/'))];
+  std::vector<Finding> findings;
+  for (const auto& [folder, count] : counts) {
+    if (count > kMaxFiles) findings.push_back({folder, 0, std::to_string(count) + " files"});
   }
   return findings;
 }

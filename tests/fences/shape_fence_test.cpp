@@ -35,6 +35,27 @@ TEST(ShapeFence, ClassesOfCoreProtocolAndReadersHaveFewFlags) {
   EXPECT_EQ(to_text(find_flags(files)), "");
 }
 
+/// Build files and page sources count as well.
+TEST(ShapeFence, FoldersHoldNoMoreThanAReaderCanSee) {
+  std::vector<SourceFile> files;
+  for (const char* const folder : {"include", "service"}) {
+    for (SourceFile& file : read_tree(MERIDIAN_SOURCE_DIR, folder, {})) {
+      files.push_back(std::move(file));
+    }
+  }
+  EXPECT_GT(files.size(), 1000U) << "the fence saw hardly any file";
+  EXPECT_EQ(to_text(find_crowded_folders(files)), "");
+}
+
+TEST(ShapeFence, CatchesACrowdedFolderAndLeavesItsRoomsOut) {
+  std::vector<SourceFile> files;
+  for (int n = 0; n < kMaxFiles; ++n) files.push_back({"a/b/" + std::to_string(n) + ".cpp", {}});
+  files.push_back({"a/b/c/0.cpp", {}});
+  EXPECT_EQ(to_text(find_crowded_folders(files)), "");
+  files.push_back({"a/b/d.hpp", {}});
+  EXPECT_EQ(to_text(find_crowded_folders(files)), "a/b: 26 files\n");
+}
+
 SourceFile source(const std::string& text) { return {"a.cpp", split_lines(text)}; }
 
 std::string body_of(int lines) {

@@ -4,7 +4,7 @@
 #include "fuzz/fuzz_targets.hpp"
 #include "fuzz/wire_samples.hpp"
 #include "meridian/cycle/state_table.hpp"
-#include "service/transport/convert.hpp"
+#include "service/transport/convert/convert.hpp"
 #include "support/programs.hpp"
 
 namespace meridian::fuzz {

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "golden/golden_table.hpp"
-#include "service/programs/surface/contact.hpp"
+#include "service/programs/surface/shape/contact.hpp"
 
 namespace meridian::surface {
 namespace {

@@ -9,7 +9,7 @@
 #include "meridian/kinematics/tool_table.hpp"
 #include "service/programs/cl/cl_options.hpp"
 #include "service/recording/record/check/check.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::test {
 

@@ -8,7 +8,7 @@
 
 #include "service/machine/file/machine_file.hpp"
 #include "service/machine/inspect/pose_solutions.hpp"
-#include "service/protocol/preflight.hpp"
+#include "service/protocol/station/preflight.hpp"
 #include "support/draws.hpp"
 #include "support/simulated_run.hpp"
 #include "support/text_file.hpp"

@@ -11,7 +11,7 @@
 #include "meridian/units.hpp"
 #include "service/analysis/simulate/move_forecast.hpp"
 #include "service/machine/file/machine_file.hpp"
-#include "service/machine/inspect/touch_off.hpp"
+#include "service/machine/inspect/calibrate/touch_off.hpp"
 
 /// Touches of a simulated surface: what is reported of a contact holds, at any speed and cycle
 /// time.

@@ -11,7 +11,7 @@
 
 #include "meridian/cycle/guard.hpp"
 #include "service/machine/file/machine_file.hpp"
-#include "service/protocol/preflight.hpp"
+#include "service/protocol/station/preflight.hpp"
 #include "support/draws.hpp"
 #include "support/simulated_run.hpp"
 #include "support/text_file.hpp"

@@ -11,7 +11,7 @@
 #include "integration/fault_kinds.hpp"
 #include "integration/plant.hpp"
 #include "integration/witness.hpp"
-#include "service/host/soak/host_watch.hpp"
+#include "service/host/soak/watch/host_watch.hpp"
 
 namespace meridian::test {
 

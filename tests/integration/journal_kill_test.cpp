@@ -15,7 +15,7 @@
 #include "integration/live_run.hpp"
 #include "integration/plant.hpp"
 #include "integration/witness.hpp"
-#include "service/recording/telemetry/journal.hpp"
+#include "service/recording/telemetry/journal/journal.hpp"
 #include "support/draws.hpp"
 
 /// A service that is killed while it writes its journal. MERIDIAN_JOURNAL_KILLS=100 in the

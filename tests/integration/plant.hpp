@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "integration/process.hpp"
-#include "service/protocol/station.hpp"
+#include "service/protocol/station/station.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/followed.hpp"
-#include "service/transport/messages.hpp"
 #include "service/transport/reader.hpp"
 #include "service/transport/writer.hpp"
 #include "support/private_domain.hpp"

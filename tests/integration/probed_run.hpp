@@ -14,7 +14,7 @@
 #include "service/drives/simulated/probed_part.hpp"
 #include "service/drives/simulated/servo.hpp"
 #include "service/programs/cl/cl_reader.hpp"
-#include "service/protocol/move_program.hpp"
+#include "service/protocol/operator/move_program.hpp"
 
 namespace meridian::test {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "service/protocol/operator_link.hpp"
+#include "service/protocol/operator/operator_link.hpp"
 
 namespace meridian::test {
 

@@ -9,7 +9,7 @@
 
 #include "integration/process.hpp"
 #include "meridian/path/cl_block.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/participant.hpp"
 #include "service/transport/reader.hpp"
 #include "service/transport/writer.hpp"

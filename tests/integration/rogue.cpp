@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/participant.hpp"
 #include "service/transport/reader.hpp"
 #include "service/transport/writer.hpp"

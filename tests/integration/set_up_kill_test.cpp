@@ -10,7 +10,7 @@
 
 #include "integration/set_up_plant.hpp"
 #include "service/machine/file/machine_file.hpp"
-#include "service/recording/telemetry/set_up_file.hpp"
+#include "service/recording/telemetry/journal/set_up_file.hpp"
 #include "support/draws.hpp"
 
 /// A service that is killed while it changes its set-up. MERIDIAN_SETUP_KILLS=500 in the

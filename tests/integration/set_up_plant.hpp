@@ -12,7 +12,7 @@
 #include "integration/plant.hpp"
 #include "service/protocol/frame_sum.hpp"
 #include "service/protocol/limits_sum.hpp"
-#include "service/protocol/machine_finder.hpp"
+#include "service/protocol/operator/machine_finder.hpp"
 
 namespace meridian::test {
 

@@ -9,7 +9,7 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/recording/record/file/wire_recording.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/participant.hpp"
 #include "service/transport/reader.hpp"
 

@@ -3,7 +3,7 @@
 /// The reference by itself: what this host can do without Meridian. Checked loosely, it only has to
 /// be a measurement at all; its figures are the other half of every latency gate.
 
-#include "service/host/probe/bare_reference.hpp"
+#include "service/host/probe/run/bare_reference.hpp"
 
 #include <gtest/gtest.h>
 

@@ -17,8 +17,8 @@
 #include <string>
 
 #include "service/host/probe/figures.hpp"
-#include "service/host/probe/measure.hpp"
 #include "service/host/probe/probe_report.hpp"
+#include "service/host/probe/run/measure.hpp"
 #include "service/host/process/processors.hpp"
 #include "service/host/process/programs.hpp"
 #include "support/private_domain.hpp"

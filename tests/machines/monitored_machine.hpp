@@ -10,7 +10,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "service/daemon/monitoring/cycle_monitor.hpp"
 #include "service/drives/simulated/servo.hpp"
-#include "service/machine/file/monitoring_file.hpp"
+#include "service/machine/file/sections/monitoring_file.hpp"
 
 namespace meridian::test {
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 /// Actions, answers and statuses of service 7, as tests of the panel need them.
 namespace meridian::panel {
 
-[[nodiscard]] inline dds::Action asked(std::uint64_t id,
-                                       ActionKind kind = ActionKind::kToolChange,
+[[nodiscard]] inline dds::Action asked(std::uint64_t id, ActionKind kind = ActionKind::kToolChange,
                                        double value = 0) {
   dds::Action action;
   action.id = id;

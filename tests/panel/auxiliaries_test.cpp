@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/panel/auxiliaries.hpp"
+#include "service/panel/status/auxiliaries.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/panel/awaited_action.hpp"
+#include "service/panel/status/awaited_action.hpp"
 
 #include <gtest/gtest.h>
 

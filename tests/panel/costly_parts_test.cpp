@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/panel/costly_parts.hpp"
+#include "service/panel/status/costly_parts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/panel/history.hpp"
+#include "service/panel/status/history.hpp"
 
 #include <gtest/gtest.h>
 

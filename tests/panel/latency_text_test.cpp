@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/panel/latency_text.hpp"
+#include "service/panel/status/latency_text.hpp"
 
 #include <gtest/gtest.h>
 

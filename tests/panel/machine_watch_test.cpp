@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/panel/machine_watch.hpp"
+#include "service/panel/status/machine_watch.hpp"
 
 #include <gtest/gtest.h>
 

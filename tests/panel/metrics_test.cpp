@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/panel/metrics.hpp"
+#include "service/panel/status/metrics.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/panel/program_preview.hpp"
+#include "service/panel/program/program_preview.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -12,7 +12,7 @@
 
 #include "service/analysis/simulate/held_by.hpp"
 #include "service/machine/file/machine_file.hpp"
-#include "service/panel/program_path.hpp"
+#include "service/panel/program/program_path.hpp"
 #include "service/text/whole_file.hpp"
 
 namespace meridian::panel {
@@ -79,7 +79,8 @@ TEST(ProgramPreview, APointKnowsItsBlockItsFeedItsJointsAndWhatHeldIt) {
   for (const auto& point : points) {
     EXPECT_NE(point.cause, ProgramPath::kUndecided);
     JointVector joints{};
-    for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = static_cast<double>(point.joints[i]);
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      joints[i] = static_cast<double>(point.joints[i]);
     const Vector3 tip = forward(here.model, here.model.tool_length_mm, joints).tip;
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(tip[k], static_cast<double>(point.tip_mm[static_cast<std::size_t>(k)]), 1e-2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/panel/run_view.hpp"
+#include "service/panel/program/run_view.hpp"
 
 #include <gtest/gtest.h>
 

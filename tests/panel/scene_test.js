@@ -3,10 +3,10 @@
 // tip at the pixel of a pinhole.
 import { execFileSync } from "node:child_process";
 import { BoxGeometry, PerspectiveCamera, Vector3 } from "three";
-import { pixelOf } from "../../service/panel/page/src/pixel.js";
-import { Frames } from "../../service/panel/page/src/screws.js";
-import { coneOf } from "../../service/panel/page/src/cone.js";
-import { Machine } from "../../service/panel/page/src/machine.js";
+import { pixelOf } from "../../service/panel/page/src/picture/pixel.js";
+import { Frames } from "../../service/panel/page/src/picture/screws.js";
+import { coneOf } from "../../service/panel/page/src/picture/cone.js";
+import { Machine } from "../../service/panel/page/src/picture/machine.js";
 import { pinholePixel } from "./pinhole.mjs";
 
 const kTip_mm = 1e-6; // reach 5e3 mm * eps = 1e-12, a million times

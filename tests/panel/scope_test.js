@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scope without a page: its states, what it keeps, and recordings that were cut.
-import { readRecording } from "../../service/panel/page/src/recording.js";
-import { ScopeBuffer } from "../../service/panel/page/src/scope_buffer.js";
-import { ScopeState } from "../../service/panel/page/src/scope_state.js";
+import { readRecording } from "../../service/panel/page/src/scope/recording.js";
+import { ScopeBuffer } from "../../service/panel/page/src/scope/scope_buffer.js";
+import { ScopeState } from "../../service/panel/page/src/scope/scope_state.js";
 
 const kJoints = [{ name: "x", rotary: false }], kLongestWindow_s = 20;
 let failures = 0;

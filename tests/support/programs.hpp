@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "meridian/path/cl_block.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 /// Blocks and batches for tests of the session protocol.
 namespace meridian::test {

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "service/programs/surface/nurbs_surface.hpp"
+#include "service/programs/surface/shape/nurbs_surface.hpp"
 
 /// Surfaces whose shape is known, for tests.
 namespace meridian::test {

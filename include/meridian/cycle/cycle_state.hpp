@@ -8,12 +8,12 @@
 #include <type_traits>
 
 #include "meridian/cycle/cycle_data.hpp"
-#include "meridian/cycle/jog_law.hpp"
-#include "meridian/cycle/jog_tool.hpp"
+#include "meridian/cycle/jog/jog_law.hpp"
+#include "meridian/cycle/jog/jog_tool.hpp"
 #include "meridian/cycle/rate_filter.hpp"
 #include "meridian/cycle/state.hpp"
-#include "meridian/cycle/stop_law.hpp"
-#include "meridian/cycle/stop_mode.hpp"
+#include "meridian/cycle/stop/stop_law.hpp"
+#include "meridian/cycle/stop/stop_mode.hpp"
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/machine_model.hpp"
@@ -198,7 +198,7 @@ enum class ProbeState : std::uint8_t {
   kFound     ///< it comes to rest after its contact
 };
 
-/// The probe, as the cycle follows it (cycle/probing.hpp).
+/// The probe, as the cycle follows it (cycle/jog/probing.hpp).
 struct Probing {
   ProbeState state = ProbeState::kOff;
   double free_time = 0;          ///< s since the probe touched anything, while drives were on

@@ -7,13 +7,13 @@
 
 #include "meridian/cycle/cycle_state.hpp"
 #include "meridian/cycle/dry_run.hpp"
-#include "meridian/cycle/follow_plan.hpp"
-#include "meridian/cycle/homing.hpp"
-#include "meridian/cycle/jogging.hpp"
+#include "meridian/cycle/jog/homing.hpp"
+#include "meridian/cycle/jog/jogging.hpp"
+#include "meridian/cycle/jog/probing.hpp"
 #include "meridian/cycle/joint_masks.hpp"
-#include "meridian/cycle/probing.hpp"
 #include "meridian/cycle/state_table.hpp"
-#include "meridian/cycle/stop_motion.hpp"
+#include "meridian/cycle/stop/follow_plan.hpp"
+#include "meridian/cycle/stop/stop_motion.hpp"
 #include "meridian/cycle/supervise.hpp"
 
 /// The operator's word: table first, then the conditions that a table cannot hold. RT: cycle.

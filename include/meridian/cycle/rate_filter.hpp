@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "meridian/cycle/ramp_phases.hpp"
+#include "meridian/cycle/jog/ramp_phases.hpp"
 
 namespace meridian {
 

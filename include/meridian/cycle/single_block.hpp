@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "meridian/cycle/cycle_state.hpp"
-#include "meridian/cycle/on_path.hpp"
+#include "meridian/cycle/stop/on_path.hpp"
 #include "meridian/planner/motion_ahead.hpp"
 
 /// Single block: the program comes to rest at the end of each block. Where the plan runs on through

@@ -8,13 +8,13 @@
 
 #include "meridian/cycle/cycle_state.hpp"
 #include "meridian/cycle/guard.hpp"
-#include "meridian/cycle/homing.hpp"
-#include "meridian/cycle/jogging.hpp"
+#include "meridian/cycle/jog/homing.hpp"
+#include "meridian/cycle/jog/jogging.hpp"
+#include "meridian/cycle/jog/probing.hpp"
 #include "meridian/cycle/joint_masks.hpp"
-#include "meridian/cycle/on_path.hpp"
-#include "meridian/cycle/probing.hpp"
 #include "meridian/cycle/state_table.hpp"
-#include "meridian/cycle/stop_motion.hpp"
+#include "meridian/cycle/stop/on_path.hpp"
+#include "meridian/cycle/stop/stop_motion.hpp"
 
 /// What makes the machine stop by itself: drives, feedback, emergency input, probe, lost periods.
 /// RT: cycle.

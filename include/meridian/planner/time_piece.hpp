@@ -59,7 +59,7 @@ struct TimePiece {
   double slow_stop_accel = 0, slow_stop_jerk = 0;
   double slow_fault_accel = 0, slow_fault_jerk = 0;
   /// They hold next to rest. What lies between them and slow_*, or stop_* and fault_* that hold up
-  /// to `authority_velocity` where that is set, may be used: cycle/stop_margin.hpp.
+  /// to `authority_velocity` where that is set, may be used: cycle/stop/stop_margin.hpp.
   double authority_velocity = 0;
   double rest_stop_accel = 0, rest_stop_jerk = 0;
   double rest_fault_accel = 0, rest_fault_jerk = 0;

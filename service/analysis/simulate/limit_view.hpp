@@ -4,7 +4,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/planner/motion_port.hpp"
 #include "service/analysis/simulate/held_by.hpp"
-#include "service/core/planner/feed/feed_limits.hpp"
+#include "service/core/planner/feed/cells/feed_limits.hpp"
 
 namespace meridian::simulate {
 

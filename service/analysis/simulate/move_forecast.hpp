@@ -4,7 +4,7 @@
 #include <string>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/protocol/move_program.hpp"
+#include "service/protocol/operator/move_program.hpp"
 
 namespace meridian::simulate {
 

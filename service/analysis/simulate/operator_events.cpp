@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "meridian/cycle/state_table.hpp"
-#include "service/recording/record/file/operator_events_writer.hpp"
+#include "service/recording/record/file/recorded/operator_events_writer.hpp"
 #include "service/text/number.hpp"
 #include "service/text/printed.hpp"
 

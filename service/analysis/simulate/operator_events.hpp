@@ -10,9 +10,9 @@
 #include "meridian/cycle/state.hpp"
 #include "meridian/expected.hpp"
 #include "meridian/planner/feed_mark.hpp"
-#include "service/recording/record/file/recorded_frame.hpp"
-#include "service/recording/record/file/recorded_limits.hpp"
-#include "service/recording/record/file/recorded_tools.hpp"
+#include "service/recording/record/file/recorded/recorded_frame.hpp"
+#include "service/recording/record/file/recorded/recorded_limits.hpp"
+#include "service/recording/record/file/recorded/recorded_tools.hpp"
 
 namespace meridian::simulate {
 

@@ -14,7 +14,7 @@
 #include "service/text/number.hpp"
 #include "service/text/printable.hpp"
 #include "service/text/printed.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::cli {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "meridian/kinematics/work_frame.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::cli {
 

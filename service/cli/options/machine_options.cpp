@@ -11,10 +11,10 @@
 #include "service/cli/options/finite_range.hpp"
 #include "service/machine/file/config_error.hpp"
 #include "service/machine/file/machine_file.hpp"
-#include "service/machine/file/positions_file.hpp"
+#include "service/machine/file/sections/positions_file.hpp"
 #include "service/machine/file/tool_names.hpp"
 #include "service/programs/nc/nc_reader.hpp"
-#include "service/protocol/home_pose.hpp"
+#include "service/protocol/operator/home_pose.hpp"
 
 namespace meridian::cli {
 

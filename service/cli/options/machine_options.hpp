@@ -10,7 +10,7 @@
 #include "service/cli/options/cl_options.hpp"
 #include "service/programs/cl/cl_options.hpp"
 #include "service/programs/nc/tool_names.hpp"
-#include "service/protocol/preflight.hpp"
+#include "service/protocol/station/preflight.hpp"
 
 namespace meridian::cli {
 

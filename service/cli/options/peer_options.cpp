@@ -7,7 +7,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/options/finite_range.hpp"
 #include "service/cli/options/machine_name_option.hpp"
-#include "service/protocol/machine_finder.hpp"
+#include "service/protocol/operator/machine_finder.hpp"
 
 namespace meridian::cli {
 

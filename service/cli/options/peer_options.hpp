@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::cli {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "service/panel/run_view.hpp"
+#include "service/panel/program/run_view.hpp"
 
 namespace meridian::cli {
 

@@ -3,7 +3,7 @@
 
 #include "service/daemon/ports/ports.hpp"
 #include "service/daemon/ports/status_clock.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/participant.hpp"
 #include "service/transport/reader.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::interpolator {
 

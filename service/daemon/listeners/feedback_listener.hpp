@@ -12,7 +12,7 @@
 #include "service/daemon/listeners/feedback_merge.hpp"
 #include "service/daemon/listeners/source_reporter.hpp"
 #include "service/daemon/ports/ports.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/participant.hpp"
 #include "service/transport/reader.hpp"
 

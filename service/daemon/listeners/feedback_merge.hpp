@@ -6,7 +6,7 @@
 #include "meridian/cycle/cycle_data.hpp"
 #include "service/daemon/ports/drive_sources.hpp"
 #include "service/daemon/ports/ports.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::interpolator {
 

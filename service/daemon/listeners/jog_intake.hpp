@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "meridian/cycle/cycle_data.hpp"
-#include "meridian/cycle/jogging.hpp"
-#include "service/transport/messages.hpp"
+#include "meridian/cycle/jog/jogging.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::interpolator {
 

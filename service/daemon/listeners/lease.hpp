@@ -11,7 +11,7 @@
 
 #include "service/daemon/listeners/lease_check.hpp"
 #include "service/daemon/ports/set_up_port.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/reader.hpp"
 #include "service/transport/writer.hpp"
 

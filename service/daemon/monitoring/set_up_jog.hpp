@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "meridian/cycle/cycle_state.hpp"
-#include "meridian/cycle/jog_path.hpp"
+#include "meridian/cycle/jog/jog_path.hpp"
 #include "meridian/geometry/jet.hpp"
 #include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/monitoring/monitored.hpp"

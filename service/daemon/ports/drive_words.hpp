@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "meridian/cycle/drive_state.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 /// CiA 402 as a controller sees it: what a drive says in homing mode, which words it is sent next.
 /// Proof: tests/unit/daemon/drive_words_test.cpp.

@@ -6,7 +6,7 @@
 
 #include "meridian/cycle/cycle_data.hpp"
 #include "meridian/cycle/cycle_state.hpp"
-#include "meridian/cycle/homing.hpp"
+#include "meridian/cycle/jog/homing.hpp"
 #include "meridian/cycle/latest_value.hpp"
 #include "meridian/cycle/spsc_ring.hpp"
 #include "meridian/path/block_reject.hpp"

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "meridian/cycle/spsc_ring.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::interpolator {
 

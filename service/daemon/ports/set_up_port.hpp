@@ -15,7 +15,7 @@
 #include "meridian/kinematics/work_frame.hpp"
 #include "service/daemon/ports/mailbox.hpp"
 #include "service/daemon/ports/program_claim.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::interpolator {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The soft limits of the set-up: what a word about them says, and what is answered.
 #include "service/daemon/supervisor/supervisor.hpp"
-#include "service/recording/telemetry/set_up_text.hpp"
+#include "service/recording/telemetry/journal/set_up_text.hpp"
 
 namespace meridian::interpolator {
 

@@ -8,8 +8,8 @@
 #include "service/protocol/frame_sum.hpp"
 #include "service/protocol/limits_sum.hpp"
 #include "service/protocol/tools_sum.hpp"
+#include "service/recording/telemetry/journal/set_up_text.hpp"
 #include "service/recording/telemetry/reply_words.hpp"
-#include "service/recording/telemetry/set_up_text.hpp"
 #include "service/recording/telemetry/words.hpp"
 
 /// The set-up: a change of work frames, tools or soft limits is written to disk, then passed to the

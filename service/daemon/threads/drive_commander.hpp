@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "service/daemon/ports/ports.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/writer.hpp"
 
 namespace meridian::interpolator {

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "service/daemon/ports/ports.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/setpoint_writer.hpp"
 
 namespace meridian::interpolator {

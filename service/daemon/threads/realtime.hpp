@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "service/machine/file/service_file.hpp"
-#include "service/transport/messages.hpp"
+#include "service/machine/file/sections/service_file.hpp"
+#include "service/transport/convert/messages.hpp"
 
 /// Threads, priorities, processors and memory: what the service asks of the kernel.
 /// docs/realtime.md says why.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "service/daemon/ports/ports.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/participant.hpp"
 #include "service/transport/writer.hpp"
 

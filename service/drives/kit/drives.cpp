@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "meridian/drive.hpp"
-#include "service/drives/kit/action_thread.hpp"
+#include "service/drives/kit/actions/action_thread.hpp"
 #include "service/drives/kit/group.hpp"
 #include "service/drives/kit/intake.hpp"
 #include "service/drives/kit/line_reporter.hpp"

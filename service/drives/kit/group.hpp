@@ -8,10 +8,10 @@
 
 #include "meridian/drive_hardware.hpp"
 #include "meridian/kinematics/joints.hpp"
-#include "service/drives/kit/following_axis.hpp"
+#include "service/drives/kit/csp/following_axis.hpp"
 #include "service/drives/kit/receiver.hpp"
 #include "service/drives/kit/setpoint_age.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::drive {
 

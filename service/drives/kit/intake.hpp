@@ -11,7 +11,7 @@
 #include "meridian/cycle/spsc_ring.hpp"
 #include "service/drives/kit/foreign_sources.hpp"
 #include "service/drives/kit/receiver.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/participant.hpp"
 #include "service/transport/reader.hpp"
 #include "service/transport/sources.hpp"

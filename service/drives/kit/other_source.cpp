@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/reader.hpp"
 #include "service/transport/sources.hpp"
 

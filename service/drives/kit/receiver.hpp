@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "service/drives/kit/master.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::drive {
 

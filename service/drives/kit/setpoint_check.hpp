@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/drives/kit/cia402.hpp"
+#include "service/drives/kit/csp/cia402.hpp"
 
 namespace meridian::drive {
 

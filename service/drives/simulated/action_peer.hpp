@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::drives {
 

@@ -11,7 +11,7 @@
 #include "service/drives/simulated/report_wire.hpp"
 #include "service/drives/simulated/setpoint_faults.hpp"
 #include "service/drives/simulated/simulated_servos.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::drives {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "meridian/kinematics/joints.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::drives {
 

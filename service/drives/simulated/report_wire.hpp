@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::drives {
 

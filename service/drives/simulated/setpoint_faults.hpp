@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <deque>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::drives {
 

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "meridian/kinematics/limited.hpp"
-#include "service/drives/kit/action_link.hpp"
-#include "service/drives/kit/action_words.hpp"
+#include "service/drives/kit/actions/action_link.hpp"
+#include "service/drives/kit/actions/action_words.hpp"
 #include "service/drives/kit/intake.hpp"
 #include "service/drives/kit/pace.hpp"
 #include "service/drives/kit/state_report.hpp"
 #include "service/drives/simulated/action_peer.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/writer.hpp"
 
 namespace meridian::drives {

@@ -8,9 +8,9 @@
 
 #include "service/analysis/plot/gnuplot.hpp"
 #include "service/host/probe/budgets.hpp"
-#include "service/host/probe/doctor.hpp"
-#include "service/host/probe/measure.hpp"
-#include "service/machine/file/service_file.hpp"
+#include "service/host/probe/doctor/doctor.hpp"
+#include "service/host/probe/run/measure.hpp"
+#include "service/machine/file/sections/service_file.hpp"
 
 namespace meridian::probe {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "service/host/probe/drive_side.hpp"
+#include "service/host/probe/run/drive_side.hpp"
 
 namespace meridian::probe {
 

@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "service/host/probe/service_setup.hpp"
+#include "service/host/probe/run/service_setup.hpp"
 #include "service/host/process/programs.hpp"
 #include "service/text/printed.hpp"
 

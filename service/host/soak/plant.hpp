@@ -9,8 +9,8 @@
 
 #include "service/host/process/child_process.hpp"
 #include "service/host/soak/chaos.hpp"
-#include "service/host/soak/evidence.hpp"
-#include "service/machine/file/service_file.hpp"
+#include "service/host/soak/watch/evidence.hpp"
+#include "service/machine/file/sections/service_file.hpp"
 
 namespace meridian::soak {
 

@@ -4,13 +4,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "service/host/probe/doctor.hpp"
-#include "service/host/probe/measure.hpp"
+#include "service/host/probe/doctor/doctor.hpp"
 #include "service/host/probe/probe_report.hpp"
+#include "service/host/probe/run/measure.hpp"
 #include "service/host/process/processors.hpp"
 #include "service/host/soak/soak_run.hpp"
 #include "service/machine/file/machine_file.hpp"
-#include "service/machine/file/service_file.hpp"
+#include "service/machine/file/sections/service_file.hpp"
 
 namespace meridian::soak {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "service/host/soak/soak_report.hpp"
+#include "service/host/soak/report/soak_report.hpp"
 
 namespace meridian::soak {
 

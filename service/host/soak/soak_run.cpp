@@ -4,9 +4,9 @@
 #include <chrono>
 #include <utility>
 
-#include "service/host/probe/doctor.hpp"
+#include "service/host/probe/doctor/doctor.hpp"
 #include "service/host/probe/figures.hpp"
-#include "service/host/soak/report_files.hpp"
+#include "service/host/soak/report/report_files.hpp"
 #include "service/host/soak/sample_program.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "service/text/whole_file.hpp"

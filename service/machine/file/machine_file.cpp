@@ -7,16 +7,16 @@
 #include <string_view>
 
 #include "meridian/units.hpp"
-#include "service/machine/file/homing_file.hpp"
-#include "service/machine/file/keep_out_file.hpp"
-#include "service/machine/file/kinematics_file.hpp"
 #include "service/machine/file/machine_name.hpp"
-#include "service/machine/file/mesh_file.hpp"
-#include "service/machine/file/monitoring_file.hpp"
-#include "service/machine/file/positions_file.hpp"
 #include "service/machine/file/section.hpp"
-#include "service/machine/file/stage_file.hpp"
-#include "service/machine/file/tip_box_file.hpp"
+#include "service/machine/file/sections/homing_file.hpp"
+#include "service/machine/file/sections/keep_out_file.hpp"
+#include "service/machine/file/sections/kinematics_file.hpp"
+#include "service/machine/file/sections/mesh_file.hpp"
+#include "service/machine/file/sections/monitoring_file.hpp"
+#include "service/machine/file/sections/positions_file.hpp"
+#include "service/machine/file/sections/stage_file.hpp"
+#include "service/machine/file/sections/tip_box_file.hpp"
 
 namespace meridian::config {
 namespace {

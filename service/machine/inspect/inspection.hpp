@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/machine/inspect/skeleton.hpp"
+#include "service/machine/inspect/picture/skeleton.hpp"
 
 namespace meridian::inspect {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/machine/inspect/fit.hpp"
+#include "service/machine/inspect/calibrate/fit.hpp"
 #include "service/machine/inspect/program_poses.hpp"
 
 /// Where on a machine a program fits. Units: mm, rad. Proof: tests/unit/inspect/placing_test.cpp.

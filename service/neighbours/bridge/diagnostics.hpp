@@ -9,7 +9,7 @@
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/neighbours/bridge/drive_positions.hpp"
 #include "service/neighbours/ros/cdr.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::bridge {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "meridian/kinematics/joints.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::bridge {
 

@@ -3,7 +3,7 @@
 
 #include "meridian/kinematics/limited.hpp"
 #include "service/machine/file/config_error.hpp"
-#include "service/protocol/served_model.hpp"
+#include "service/protocol/operator/served_model.hpp"
 
 namespace meridian::bridge {
 namespace {

@@ -7,8 +7,8 @@
 #include "service/neighbours/bridge/drive_positions.hpp"
 #include "service/neighbours/bridge/ros_publisher.hpp"
 #include "service/neighbours/bridge/sent_setpoint.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/followed.hpp"
-#include "service/transport/messages.hpp"
 #include "service/transport/reader.hpp"
 
 namespace meridian::bridge {

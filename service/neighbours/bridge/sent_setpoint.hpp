@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::bridge {
 

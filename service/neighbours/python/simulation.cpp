@@ -10,9 +10,9 @@
 #include "service/machine/file/machine_file.hpp"
 #include "service/programs/cl/cl_reader.hpp"
 #include "service/programs/nc/nc_reader.hpp"
-#include "service/protocol/home_pose.hpp"
-#include "service/protocol/preflight.hpp"
-#include "service/protocol/smooth_tolerances.hpp"
+#include "service/protocol/operator/home_pose.hpp"
+#include "service/protocol/station/preflight.hpp"
+#include "service/protocol/station/smooth_tolerances.hpp"
 
 namespace meridian::python {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "service/neighbours/ros/events_file.hpp"
 #include "service/neighbours/ros/motion_file.hpp"
-#include "service/recording/record/file/operator_events_writer.hpp"
+#include "service/recording/record/file/recorded/operator_events_writer.hpp"
 #include "service/recording/record/file/recording_reader.hpp"
 #include "service/text/printed.hpp"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/neighbours/ros/event_topic.hpp"
 #include "service/neighbours/ros/message_types.hpp"
+#include "service/neighbours/ros/topics/event_topic.hpp"
 #include "service/recording/record/file/recording_reader.hpp"
 
 namespace meridian::ros {

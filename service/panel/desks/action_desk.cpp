@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "service/drives/kit/action_words.hpp"
+#include "service/drives/kit/actions/action_words.hpp"
 #include "service/panel/json_text.hpp"
 
 namespace meridian::panel {

@@ -5,11 +5,11 @@
 #include <mutex>
 #include <optional>
 
-#include "service/drives/kit/action_link.hpp"
-#include "service/panel/awaited_action.hpp"
+#include "service/drives/kit/actions/action_link.hpp"
 #include "service/panel/desks/outcome.hpp"
 #include "service/panel/serve/hub.hpp"
-#include "service/transport/messages.hpp"
+#include "service/panel/status/awaited_action.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/participant.hpp"
 #include "service/transport/reader.hpp"
 

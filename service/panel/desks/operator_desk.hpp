@@ -13,8 +13,8 @@
 #include "meridian/cycle/state.hpp"
 #include "service/panel/desks/outcome.hpp"
 #include "service/panel/jog_grip.hpp"
-#include "service/protocol/jog_hand.hpp"
-#include "service/protocol/operator_link.hpp"
+#include "service/protocol/operator/jog_hand.hpp"
+#include "service/protocol/operator/operator_link.hpp"
 #include "service/transport/participant.hpp"
 
 namespace meridian::panel {

@@ -8,7 +8,7 @@
 
 #include "service/machine/file/config_error.hpp"
 #include "service/machine/file/machine_file.hpp"
-#include "service/panel/program_text.hpp"
+#include "service/panel/program/program_text.hpp"
 #include "service/protocol/frame_sum.hpp"
 #include "service/protocol/limits_sum.hpp"
 #include "service/protocol/tools_sum.hpp"

@@ -14,10 +14,10 @@
 
 #include "service/panel/desks/outcome.hpp"
 #include "service/panel/desks/program_folder.hpp"
-#include "service/panel/program_preview.hpp"
+#include "service/panel/program/program_preview.hpp"
 #include "service/panel/serve/hub.hpp"
-#include "service/protocol/stream_run.hpp"
-#include "service/transport/messages.hpp"
+#include "service/protocol/station/stream_run.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/participant.hpp"
 
 namespace meridian::panel {

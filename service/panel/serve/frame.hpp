@@ -4,10 +4,10 @@
 #include <string>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/panel/auxiliaries.hpp"
 #include "service/panel/motion.hpp"
 #include "service/panel/serve/news.hpp"
-#include "service/transport/messages.hpp"
+#include "service/panel/status/auxiliaries.hpp"
+#include "service/transport/convert/messages.hpp"
 
 /// What the page is told, as JSON texts; their members are listed in docs/panel.md.
 namespace meridian::panel {

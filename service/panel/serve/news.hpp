@@ -7,7 +7,7 @@
 #include <string>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::panel {
 
@@ -29,7 +29,8 @@ struct NewsItem {
 [[nodiscard]] std::string alarm_text(const dds::Status& status, const MachineModel& model);
 
 /// What the machine said since the panel began, and what a history adds, newest last: a page that
-/// is loaded again shows it all. At most kKept items; one thread. Proof: tests/panel/panel_unit_test.cpp.
+/// is loaded again shows it all. At most kKept items; one thread. Proof:
+/// tests/panel/panel_unit_test.cpp.
 class News {
  public:
   static constexpr std::size_t kKept = 200;

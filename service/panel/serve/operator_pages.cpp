@@ -7,7 +7,7 @@
 
 #include "meridian/cycle/state_table.hpp"
 #include "service/panel/json_text.hpp"
-#include "service/protocol/operator_link.hpp"
+#include "service/protocol/operator/operator_link.hpp"
 #include "service/text/printed.hpp"
 
 namespace meridian::panel {

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "meridian/cycle/jog_tool.hpp"
+#include "meridian/cycle/jog/jog_tool.hpp"
 #include "meridian/cycle/state_table.hpp"
 #include "service/text/number.hpp"
 

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "meridian/cycle/state.hpp"
-#include "service/protocol/jog_hand.hpp"
-#include "service/protocol/operator_link.hpp"
+#include "service/protocol/operator/jog_hand.hpp"
+#include "service/protocol/operator/operator_link.hpp"
 
 namespace meridian::panel {
 

@@ -12,7 +12,7 @@
 
 #include "meridian/geometry/vector3.hpp"
 #include "service/programs/cl/dialect.hpp"
-#include "service/programs/cl/frame.hpp"
+#include "service/programs/cl/interpreter/frame.hpp"
 
 namespace meridian::cl {
 

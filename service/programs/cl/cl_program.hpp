@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "service/programs/cl/interpreter.hpp"
+#include "service/programs/cl/interpreter/interpreter.hpp"
 #include "service/programs/cl/program_source.hpp"
 #include "service/programs/cl/text/statement.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "service/programs/cl/cl_program.hpp"
 #include "service/programs/cl/foreign.hpp"
-#include "service/programs/cl/restart.hpp"
+#include "service/programs/cl/interpreter/restart.hpp"
 #include "service/programs/cl/text/line_source.hpp"
 
 namespace meridian::cl {

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "service/programs/cl/text/written_text.hpp"
-#include "service/programs/nc/codes.hpp"
 #include "service/programs/nc/siemens/siemens_names.hpp"
+#include "service/programs/nc/words/codes.hpp"
 
 namespace meridian::nc {
 namespace {

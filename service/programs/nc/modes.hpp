@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "meridian/geometry/vector3.hpp"
-#include "service/programs/cl/modal.hpp"
+#include "service/programs/cl/interpreter/modal.hpp"
 
 namespace meridian::nc {
 

@@ -5,13 +5,13 @@
 #include <optional>
 #include <string>
 
-#include "service/programs/cl/modal.hpp"
-#include "service/programs/nc/frames.hpp"
-#include "service/programs/nc/machine_axes.hpp"
+#include "service/programs/cl/interpreter/modal.hpp"
+#include "service/programs/nc/frames/frames.hpp"
+#include "service/programs/nc/frames/machine_axes.hpp"
 #include "service/programs/nc/modes.hpp"
 #include "service/programs/nc/nc_line.hpp"
 #include "service/programs/nc/tool_names.hpp"
-#include "service/programs/nc/variables.hpp"
+#include "service/programs/nc/words/variables.hpp"
 
 /// What the words of an NC program do. Each takes the line, changes what holds for later ones, and
 /// gives blocks to the path, the same as the words of a CL file do.

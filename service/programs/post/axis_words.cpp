@@ -7,7 +7,7 @@
 #include "meridian/kinematics/jacobian.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
-#include "service/programs/post/nc_text.hpp"
+#include "service/programs/post/controls/nc_text.hpp"
 
 namespace meridian::post {
 namespace {

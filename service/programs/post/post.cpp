@@ -12,12 +12,12 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
-#include "service/programs/post/nc_text.hpp"
+#include "service/programs/post/controls/nc_text.hpp"
+#include "service/programs/post/controls/robot_axes.hpp"
+#include "service/programs/post/controls/robot_name.hpp"
 #include "service/programs/post/piece_writer.hpp"
 #include "service/programs/post/planned_path.hpp"
 #include "service/programs/post/program.hpp"
-#include "service/programs/post/robot_axes.hpp"
-#include "service/programs/post/robot_name.hpp"
 #include "service/programs/post/tip_frame.hpp"
 
 namespace meridian::post {

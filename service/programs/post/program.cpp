@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/programs/post/program.hpp"
 
-#include "service/programs/post/nc_text.hpp"
+#include "service/programs/post/controls/nc_text.hpp"
 
 namespace meridian::post {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "meridian/units.hpp"
-#include "service/programs/post/nc_text.hpp"
+#include "service/programs/post/controls/nc_text.hpp"
 #include "service/programs/post/program.hpp"
 
 namespace meridian::post {

@@ -13,7 +13,7 @@
 #include "service/programs/cl/cl_points.hpp"
 #include "service/programs/proof/rewind.hpp"
 #include "service/recording/record/check/check_report.hpp"
-#include "service/recording/record/check/path_matching.hpp"
+#include "service/recording/record/check/path/path_matching.hpp"
 
 namespace meridian::proof {
 namespace {

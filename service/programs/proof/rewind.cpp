@@ -8,7 +8,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/winding.hpp"
-#include "service/recording/record/check/towards_pole.hpp"
+#include "service/recording/record/check/path/towards_pole.hpp"
 
 namespace meridian::proof {
 namespace {

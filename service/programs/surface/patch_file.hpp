@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "service/programs/surface/contact.hpp"
-#include "service/programs/surface/nurbs_surface.hpp"
+#include "service/programs/surface/shape/contact.hpp"
+#include "service/programs/surface/shape/nurbs_surface.hpp"
 #include "service/programs/surface/surface_path.hpp"
 
 namespace meridian::surface {

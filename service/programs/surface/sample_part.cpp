@@ -7,7 +7,7 @@
 #include "meridian/geometry/vector3.hpp"
 #include "service/programs/cl/cl_writer.hpp"
 #include "service/programs/surface/sample_blocks.hpp"
-#include "service/programs/surface/side_milling.hpp"
+#include "service/programs/surface/shape/side_milling.hpp"
 
 namespace meridian::surface {
 namespace {

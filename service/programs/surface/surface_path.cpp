@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "meridian/units.hpp"
-#include "service/programs/surface/stepping.hpp"
+#include "service/programs/surface/shape/stepping.hpp"
 
 namespace meridian::surface {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "meridian/expected.hpp"
-#include "service/programs/surface/contact.hpp"
+#include "service/programs/surface/shape/contact.hpp"
 
 namespace meridian::surface {
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/machine/file/service_file.hpp"
+#include "service/machine/file/sections/service_file.hpp"
 #include "service/recording/telemetry/flight_store.hpp"
 
 namespace meridian::telemetry {

@@ -16,7 +16,7 @@
 
 #include "service/text/line_output.hpp"
 #include "service/text/printable.hpp"
-#include "service/transport/dds_log.hpp"
+#include "service/transport/cyclone/dds_log.hpp"
 
 namespace meridian::telemetry {
 namespace {

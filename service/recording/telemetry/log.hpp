@@ -20,8 +20,9 @@ namespace meridian::telemetry {
 /// The service's log: lines are queued and written by a thread of their own, so that a blocked
 /// terminal or a full disk holds nobody up; when the queue is full the oldest lines go. `file`
 /// empty: standard error. Lines that were lost are counted, and the next that is written says how
-/// many. What DDS says goes into it too (service/transport/dds_log.hpp). Throws spdlog::spdlog_ex
-/// where the file cannot be opened. Call once. Proof: tests/integration/blocked_log_test.cpp.
+/// many. What DDS says goes into it too (service/transport/cyclone/dds_log.hpp). Throws
+/// spdlog::spdlog_ex where the file cannot be opened. Call once. Proof:
+/// tests/integration/blocked_log_test.cpp.
 [[nodiscard]] std::shared_ptr<spdlog::logger> make_log(const std::filesystem::path& file);
 
 /// Writes what is queued and ends the log's thread; where nobody reads for as long as `patience`,

@@ -9,7 +9,7 @@
 #include "meridian/cycle/cycle_data.hpp"
 #include "meridian/cycle/spsc_ring.hpp"
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/recording/record/file/operator_events_writer.hpp"
+#include "service/recording/record/file/recorded/operator_events_writer.hpp"
 #include "service/recording/record/file/recording_writer.hpp"
 
 namespace meridian::telemetry {

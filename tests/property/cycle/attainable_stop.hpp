@@ -9,8 +9,8 @@
 #include "property/cycle/stop_cells.hpp"
 #include "property/cycle/stop_motion.hpp"
 #include "property/cycle/stop_oracle.hpp"
-#include "service/core/planner/feed/feed_rest.hpp"
-#include "service/core/planner/feed/jerk_step.hpp"
+#include "service/core/planner/feed/cells/feed_rest.hpp"
+#include "service/core/planner/feed/solver/jerk_step.hpp"
 
 /// The fastest stop along a path that was found to keep every joint's limits on the path ahead.
 namespace meridian::test {

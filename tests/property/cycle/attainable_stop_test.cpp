@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "meridian/cycle/stop_law.hpp"
+#include "meridian/cycle/stop/stop_law.hpp"
 #include "support/machines.hpp"
 
 /// The oracle of stops itself: where limits do not tighten it is the optimum, in front of a corner

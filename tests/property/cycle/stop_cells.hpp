@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "service/core/planner/feed/feed_cells.hpp"
+#include "service/core/planner/feed/cells/feed_cells.hpp"
 
 namespace meridian::test {
 

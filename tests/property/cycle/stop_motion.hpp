@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "meridian/planner/time_law.hpp"
-#include "service/core/planner/feed/feed_limits.hpp"
+#include "service/core/planner/feed/cells/feed_limits.hpp"
 
 /// A stop along a path, from its begin to rest, and how much of the joints' limits it uses.
 namespace meridian::test {

@@ -12,7 +12,7 @@
 #include "meridian/planner/time_law.hpp"
 #include "property/planner/plan_trace.hpp"
 #include "property/planner/random_programs.hpp"
-#include "service/core/planner/feed/rolling_feed.hpp"
+#include "service/core/planner/feed/rolling/rolling_feed.hpp"
 
 /// Smooth paths for the feed planner and what it makes of them, checked by setpoints alone.
 namespace meridian::test {

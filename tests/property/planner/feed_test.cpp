@@ -8,7 +8,7 @@
 
 #include "meridian/cycle/rate_filter.hpp"
 #include "property/planner/feed_paths.hpp"
-#include "service/core/planner/feed/two_pass.hpp"
+#include "service/core/planner/feed/solver/two_pass.hpp"
 #include "support/draws.hpp"
 #include "support/machines.hpp"
 

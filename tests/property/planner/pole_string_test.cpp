@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "property/planner/smooth_trace.hpp"
-#include "service/core/planner/singular/taut_string.hpp"
+#include "service/core/planner/singular/pole/taut_string.hpp"
 #include "support/draws.hpp"
 #include "support/machines.hpp"
 #include "support/program_end.hpp"

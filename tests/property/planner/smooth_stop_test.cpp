@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "meridian/cycle/rate_filter.hpp"
-#include "meridian/cycle/stop_margin.hpp"
+#include "meridian/cycle/stop/stop_margin.hpp"
 #include "property/cycle/stop_oracle.hpp"
 #include "property/path/hostile_path.hpp"
 #include "property/planner/random_programs.hpp"

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "meridian/cycle/stop_law.hpp"
-#include "meridian/cycle/stop_margin.hpp"
+#include "meridian/cycle/stop/stop_law.hpp"
+#include "meridian/cycle/stop/stop_margin.hpp"
 #include "property/cycle/stop_oracle.hpp"
 #include "property/planner/plan_trace.hpp"
 #include "property/planner/random_programs.hpp"

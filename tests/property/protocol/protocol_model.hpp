@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "service/protocol/intake_check.hpp"
-#include "service/protocol/station.hpp"
+#include "service/protocol/station/station.hpp"
 #include "support/explore.hpp"
 #include "support/machines.hpp"
 #include "support/programs.hpp"

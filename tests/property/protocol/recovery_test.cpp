@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "service/protocol/line_ends.hpp"
-#include "service/recording/telemetry/journal_keeper.hpp"
+#include "service/protocol/station/line_ends.hpp"
+#include "service/recording/telemetry/journal/journal_keeper.hpp"
 #include "support/draws.hpp"
 
 /// Programs that are broken off and gone on with by the line that the journal names, again and

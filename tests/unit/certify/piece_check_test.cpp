@@ -8,7 +8,7 @@
 #include "meridian/path/build_piece.hpp"
 #include "meridian/planner/joints_at.hpp"
 #include "meridian/planner/time_law.hpp"
-#include "service/core/planner/feed/feed_check.hpp"
+#include "service/core/planner/feed/solver/feed_check.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::certify {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "read_text.hpp"
-#include "service/programs/cl/copies.hpp"
+#include "service/programs/cl/interpreter/copies.hpp"
 
 namespace meridian::cl {
 namespace {

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "read_text.hpp"
-#include "service/programs/cl/run_cl.hpp"
+#include "service/programs/cl/interpreter/run_cl.hpp"
 
 namespace meridian::cl {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/programs/cl/frame.hpp"
+#include "service/programs/cl/interpreter/frame.hpp"
 
 #include <gtest/gtest.h>
 

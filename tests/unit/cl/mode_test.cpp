@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "service/programs/cl/dialect.hpp"
-#include "service/programs/cl/frame_chain.hpp"
+#include "service/programs/cl/interpreter/frame_chain.hpp"
 
 namespace meridian::cl {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "read_text.hpp"
 #include "service/programs/cl/cl_points.hpp"
-#include "service/programs/cl/run_cl.hpp"
+#include "service/programs/cl/interpreter/run_cl.hpp"
 #include "support/scratch.hpp"
 
 namespace meridian::cl {

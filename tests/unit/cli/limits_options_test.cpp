@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cli/options/limits_options.hpp"
+#include "service/cli/options/operator/limits_options.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cli/options/move_options.hpp"
+#include "service/cli/options/operator/move_options.hpp"
 
 #include <gtest/gtest.h>
 

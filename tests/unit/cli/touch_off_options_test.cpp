@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/cli/options/touch_off_options.hpp"
+#include "service/cli/options/operator/touch_off_options.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/cycle/begin_stop.hpp"
+#include "meridian/cycle/stop/begin_stop.hpp"
 
 #include <gtest/gtest.h>
 

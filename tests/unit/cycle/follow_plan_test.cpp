@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/cycle/follow_plan.hpp"
+#include "meridian/cycle/stop/follow_plan.hpp"
 
 #include <gtest/gtest.h>
 

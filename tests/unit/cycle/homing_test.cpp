@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/cycle/homing.hpp"
+#include "meridian/cycle/jog/homing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "meridian/cycle/jogging.hpp"
+#include "meridian/cycle/jog/jogging.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "unit/cycle/hand.hpp"
 

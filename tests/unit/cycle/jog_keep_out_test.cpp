@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "meridian/cycle/jogging.hpp"
+#include "meridian/cycle/jog/jogging.hpp"
 #include "support/keep_out_machine.hpp"
 #include "support/machines.hpp"
 #include "unit/cycle/hand.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/cycle/jog_law.hpp"
+#include "meridian/cycle/jog/jog_law.hpp"
 
 #include <gtest/gtest.h>
 

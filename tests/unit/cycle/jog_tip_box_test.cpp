@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "meridian/cycle/jogging.hpp"
+#include "meridian/cycle/jog/jogging.hpp"
 #include "meridian/kinematics/tip_over_base.hpp"
 #include "support/machines.hpp"
 #include "unit/cycle/hand.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/cycle/jogging.hpp"
+#include "meridian/cycle/jog/jogging.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "meridian/cycle/probing.hpp"
+#include "meridian/cycle/jog/probing.hpp"
 #include "unit/cycle/program.hpp"
 
 namespace meridian::test {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "meridian/cycle/probing.hpp"
+#include "meridian/cycle/jog/probing.hpp"
 #include "unit/cycle/hand.hpp"
 #include "unit/cycle/probed.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/cycle/probing.hpp"
+#include "meridian/cycle/jog/probing.hpp"
 
 #include <gtest/gtest.h>
 

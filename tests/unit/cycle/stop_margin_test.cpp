@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/cycle/stop_margin.hpp"
+#include "meridian/cycle/stop/stop_margin.hpp"
 
 #include <gtest/gtest.h>
 

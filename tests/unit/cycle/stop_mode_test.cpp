@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/cycle/stop_mode.hpp"
+#include "meridian/cycle/stop/stop_mode.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/cycle/stop_motion.hpp"
+#include "meridian/cycle/stop/stop_motion.hpp"
 
 #include <gtest/gtest.h>
 

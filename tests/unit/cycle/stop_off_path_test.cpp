@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/cycle/stop_off_path.hpp"
+#include "meridian/cycle/stop/stop_off_path.hpp"
 
 #include <gtest/gtest.h>
 

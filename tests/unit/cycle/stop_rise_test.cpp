@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "meridian/cycle/stop_motion.hpp"
+#include "meridian/cycle/stop/stop_motion.hpp"
 #include "support/machines.hpp"
 #include "unit/cycle/program.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::test {
 

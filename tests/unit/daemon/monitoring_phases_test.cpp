@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "service/machine/file/monitoring_file.hpp"
+#include "service/machine/file/sections/monitoring_file.hpp"
 #include "support/alarm_letter.hpp"
 #include "support/document_table.hpp"
 #include "support/draws.hpp"

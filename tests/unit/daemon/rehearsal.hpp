@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "meridian/cycle/homing.hpp"
+#include "meridian/cycle/jog/homing.hpp"
 #include "meridian/kinematics/kinematics.hpp"
 #include "service/daemon/listeners/feedback_merge.hpp"
 #include "service/daemon/monitoring/cycle_monitor.hpp"

@@ -10,7 +10,7 @@
 
 #include "service/daemon/monitoring/cycle_monitor.hpp"
 #include "service/machine/file/machine_file.hpp"
-#include "service/machine/file/monitoring_file.hpp"
+#include "service/machine/file/sections/monitoring_file.hpp"
 #include "service/recording/record/words.hpp"
 #include "support/draws.hpp"
 #include "support/machines.hpp"

@@ -8,7 +8,7 @@
 
 #include "service/machine/file/machine_file.hpp"
 #include "service/protocol/tools_sum.hpp"
-#include "service/recording/telemetry/set_up_file.hpp"
+#include "service/recording/telemetry/journal/set_up_file.hpp"
 #include "supervisor_rig.hpp"
 
 namespace meridian::interpolator {

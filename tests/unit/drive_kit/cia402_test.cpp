@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/kit/cia402.hpp"
+#include "service/drives/kit/csp/cia402.hpp"
 
 #include <gtest/gtest.h>
 

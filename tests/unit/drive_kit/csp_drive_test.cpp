@@ -9,8 +9,8 @@
 
 #include "meridian/drive.hpp"
 #include "meridian/drive_csp.hpp"
-#include "service/drives/kit/cia402.hpp"
-#include "service/drives/kit/following_axis.hpp"
+#include "service/drives/kit/csp/cia402.hpp"
+#include "service/drives/kit/csp/following_axis.hpp"
 
 namespace meridian::drive {
 namespace {

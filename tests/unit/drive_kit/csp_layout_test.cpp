@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/kit/csp_layout.hpp"
+#include "service/drives/kit/csp/csp_layout.hpp"
 
 #include <gtest/gtest.h>
 

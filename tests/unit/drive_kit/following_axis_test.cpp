@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/kit/following_axis.hpp"
+#include "service/drives/kit/csp/following_axis.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/kit/homing_run.hpp"
+#include "service/drives/kit/csp/homing_run.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <initializer_list>
 
-#include "service/drives/kit/following_axis.hpp"
+#include "service/drives/kit/csp/following_axis.hpp"
 #include "unit/drive_kit/scripted_hardware.hpp"
 
 namespace meridian::drive {

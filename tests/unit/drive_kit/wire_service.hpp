@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "meridian/cycle/drive_state.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/reader.hpp"
 #include "service/transport/writer.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/machine/inspect/fit.hpp"
+#include "service/machine/inspect/calibrate/fit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "service/machine/file/machine_file.hpp"
 #include "service/machine/inspect/inspection.hpp"
 #include "service/machine/inspect/joint_pattern.hpp"
-#include "service/machine/inspect/skeleton.hpp"
+#include "service/machine/inspect/picture/skeleton.hpp"
 #include "service/programs/cl/cl_reader.hpp"
 #include "support/shipped_machines.hpp"
 #include "support/text_file.hpp"

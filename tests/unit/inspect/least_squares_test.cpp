@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/machine/inspect/least_squares.hpp"
+#include "service/machine/inspect/calibrate/least_squares.hpp"
 
 #include <gtest/gtest.h>
 

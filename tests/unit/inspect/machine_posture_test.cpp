@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/machine/inspect/machine_posture.hpp"
+#include "service/machine/inspect/picture/machine_posture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "service/machine/file/machine_file.hpp"
-#include "service/machine/inspect/path_picture.hpp"
+#include "service/machine/inspect/picture/path_picture.hpp"
 #include "support/scratch.hpp"
 #include "support/shipped_machines.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/machine/inspect/rotary_centres.hpp"
+#include "service/machine/inspect/calibrate/rotary_centres.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/machine/inspect/touch_off.hpp"
+#include "service/machine/inspect/calibrate/touch_off.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/machine/inspect/touches.hpp"
+#include "service/machine/inspect/calibrate/touches.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/machine/file/keep_out_file.hpp"
+#include "service/machine/file/sections/keep_out_file.hpp"
 
 #include <gtest/gtest.h>
 

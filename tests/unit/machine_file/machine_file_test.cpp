@@ -8,7 +8,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/machine/file/config_error.hpp"
-#include "service/machine/file/homing_file.hpp"
+#include "service/machine/file/sections/homing_file.hpp"
 #include "support/machines.hpp"
 #include "support/text_file.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "service/machine/file/machine_file.hpp"
-#include "service/machine/file/service_file.hpp"
+#include "service/machine/file/sections/service_file.hpp"
 #include "support/text_file.hpp"
 
 namespace meridian::config {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/machine/file/mesh_file.hpp"
+#include "service/machine/file/sections/mesh_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -48,9 +48,9 @@ TEST(MeshFile, RefusesOtherLinksAndNamesThatLeadElsewhere) {
         << file;
   }
   EXPECT_NE(refusal_of_meshes("[[mesh]]\nlink = \"base\"\n").find("file"), std::string::npos);
-  EXPECT_NE(refusal_of_meshes("[[mesh]]\nlink = \"base\"\nfile = \"a.stl\"\nscale = 2\n")
-                .find("scale"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal_of_meshes("[[mesh]]\nlink = \"base\"\nfile = \"a.stl\"\nscale = 2\n").find("scale"),
+      std::string::npos);
 }
 
 TEST(MeshFile, TakesNoMoreThanAPictureCanShow) {

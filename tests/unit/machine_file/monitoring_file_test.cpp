@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/machine/file/monitoring_file.hpp"
+#include "service/machine/file/sections/monitoring_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "service/programs/nc/codes.hpp"
+#include "service/programs/nc/words/codes.hpp"
 #include "unit/nc/read_nc.hpp"
 
 namespace meridian::nc {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rotary words: the tool axis that they give, and blocks that are cut to follow it.
-#include "service/programs/nc/turn.hpp"
+#include "service/programs/nc/words/turn.hpp"
 
 #include <gtest/gtest.h>
 

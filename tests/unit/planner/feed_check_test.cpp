@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/feed_check.hpp"
+#include "service/core/planner/feed/solver/feed_check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "service/core/planner/feed/feed_rest.hpp"
+#include "service/core/planner/feed/cells/feed_rest.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::test::feed_check {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/feed_piece.hpp"
+#include "service/core/planner/feed/rolling/feed_piece.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/singular/programmed_tip.hpp"
+#include "service/core/planner/singular/robot/programmed_tip.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "service/core/planner/singular/programmed_axis.hpp"
+#include "service/core/planner/singular/pole/programmed_axis.hpp"
 
 namespace meridian {
 namespace {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "meridian/kinematics/tip_over_base.hpp"
-#include "service/core/planner/feed/joint_cells.hpp"
+#include "service/core/planner/feed/cells/joint_cells.hpp"
 #include "support/machines.hpp"
 #include "unit/planner/rest_to_rest_bench.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/programs/post/nc_text.hpp"
+#include "service/programs/post/controls/nc_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/host/probe/dds_network.hpp"
+#include "service/host/probe/doctor/dds_network.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/host/probe/doctor.hpp"
+#include "service/host/probe/doctor/doctor.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 #include <string>
 
 #include "service/host/probe/budgets.hpp"
-#include "service/host/probe/dds_network.hpp"
+#include "service/host/probe/doctor/dds_network.hpp"
 #include "service/host/process/programs.hpp"
 
 namespace meridian::probe {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/host/probe/load.hpp"
+#include "service/host/probe/run/load.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "service/host/probe/cyclictest.hpp"
+#include "service/host/probe/run/cyclictest.hpp"
 
 namespace meridian::probe {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/host/probe/service_setup.hpp"
+#include "service/host/probe/run/service_setup.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/protocol/end_watch.hpp"
+#include "service/protocol/station/end_watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/protocol/line_ends.hpp"
+#include "service/protocol/station/line_ends.hpp"
 
 #include <gtest/gtest.h>
 

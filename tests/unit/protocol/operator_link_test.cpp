@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/protocol/operator_link.hpp"
+#include "service/protocol/operator/operator_link.hpp"
 
 #include <gtest/gtest.h>
 

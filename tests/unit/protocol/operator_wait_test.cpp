@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <thread>
 
-#include "service/protocol/operator_link.hpp"
+#include "service/protocol/operator/operator_link.hpp"
 #include "support/private_domain.hpp"
 
 namespace meridian::stream {

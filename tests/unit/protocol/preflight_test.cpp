@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/protocol/preflight.hpp"
+#include "service/protocol/station/preflight.hpp"
 
 #include <gtest/gtest.h>
 

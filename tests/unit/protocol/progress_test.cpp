@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/protocol/progress.hpp"
+#include "service/protocol/station/progress.hpp"
 
 #include <gtest/gtest.h>
 

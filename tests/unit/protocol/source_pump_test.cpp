@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/protocol/source_pump.hpp"
+#include "service/protocol/station/source_pump.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/protocol/station.hpp"
+#include "service/protocol/station/station.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/record/check/checked_path.hpp"
+#include "service/recording/record/check/path/checked_path.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/record/check/feed_overrides.hpp"
+#include "service/recording/record/check/motion/feed_overrides.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/record/check/free_space.hpp"
+#include "service/recording/record/check/path/free_space.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/record/file/operator_events_writer.hpp"
+#include "service/recording/record/file/recorded/operator_events_writer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/record/check/path_matching.hpp"
+#include "service/recording/record/check/path/path_matching.hpp"
 
 #include <gtest/gtest.h>
 

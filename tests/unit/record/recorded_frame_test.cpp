@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/record/file/recorded_frame.hpp"
+#include "service/recording/record/file/recorded/recorded_frame.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-#include "service/recording/record/file/operator_events_writer.hpp"
+#include "service/recording/record/file/recorded/operator_events_writer.hpp"
 
 namespace meridian::record {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/record/file/recorded_limits.hpp"
+#include "service/recording/record/file/recorded/recorded_limits.hpp"
 
 #include <gtest/gtest.h>
 
-#include "service/recording/record/file/operator_events_writer.hpp"
+#include "service/recording/record/file/recorded/operator_events_writer.hpp"
 #include "support/text_file.hpp"
 
 namespace meridian::record {

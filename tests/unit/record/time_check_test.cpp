@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/record/check/time_check.hpp"
+#include "service/recording/record/check/motion/time_check.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <map>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/neighbours/ros/marker_topic.hpp"
-#include "service/neighbours/ros/transform_topic.hpp"
+#include "service/neighbours/ros/topics/marker_topic.hpp"
+#include "service/neighbours/ros/topics/transform_topic.hpp"
 #include "support/machines.hpp"
 #include "support/mcap_reading.hpp"
 #include "support/text_file.hpp"

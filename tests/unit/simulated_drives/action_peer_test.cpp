@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "service/drives/kit/action_words.hpp"
+#include "service/drives/kit/actions/action_words.hpp"
 
 namespace meridian::drives {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/simulated/check_player.hpp"
+#include "service/drives/simulated/check/check_player.hpp"
 
 #include <gtest/gtest.h>
 

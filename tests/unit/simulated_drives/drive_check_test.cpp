@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/drives/simulated/drive_check.hpp"
+#include "service/drives/simulated/check/drive_check.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <optional>
 
-#include "service/drives/kit/following_axis.hpp"
+#include "service/drives/kit/csp/following_axis.hpp"
 #include "service/drives/simulated/simulated_servos.hpp"
 
 namespace meridian::drives {

@@ -11,7 +11,7 @@
 
 #include "meridian/kinematics/limited.hpp"
 #include "service/drives/kit/group.hpp"
-#include "service/drives/simulated/checked_drives.hpp"
+#include "service/drives/simulated/check/checked_drives.hpp"
 #include "service/drives/simulated/simulated_servos.hpp"
 
 namespace meridian::test {

@@ -6,8 +6,8 @@
 
 #include "meridian/cycle/drive_state.hpp"
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/drives/kit/cia402.hpp"
-#include "service/drives/simulated/checked_drives.hpp"
+#include "service/drives/kit/csp/cia402.hpp"
+#include "service/drives/simulated/check/checked_drives.hpp"
 
 namespace meridian::test {
 

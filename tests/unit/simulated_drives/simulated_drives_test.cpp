@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/reader.hpp"
 #include "service/transport/writer.hpp"
 #include "support/machines.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/host/soak/evidence.hpp"
+#include "service/host/soak/watch/evidence.hpp"
 
 #include <gtest/gtest.h>
 

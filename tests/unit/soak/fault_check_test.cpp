@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/host/soak/fault_check.hpp"
+#include "service/host/soak/report/fault_check.hpp"
 
 #include <gtest/gtest.h>
 

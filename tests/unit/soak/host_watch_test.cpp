@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/host/soak/host_watch.hpp"
+#include "service/host/soak/watch/host_watch.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/host/soak/report_files.hpp"
+#include "service/host/soak/report/report_files.hpp"
 
 #include <gtest/gtest.h>
 

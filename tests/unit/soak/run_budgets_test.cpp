@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/host/soak/run_budgets.hpp"
+#include "service/host/soak/report/run_budgets.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <string>
 
-#include "service/host/soak/host_credit.hpp"
-#include "service/host/soak/overrun_excuse.hpp"
-#include "service/host/soak/soak_report.hpp"
-#include "service/host/soak/time_slices.hpp"
+#include "service/host/soak/report/soak_report.hpp"
+#include "service/host/soak/watch/host_credit.hpp"
+#include "service/host/soak/watch/overrun_excuse.hpp"
+#include "service/host/soak/watch/time_slices.hpp"
 
 namespace meridian::soak {
 namespace {

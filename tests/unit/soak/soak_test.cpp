@@ -12,9 +12,9 @@
 #include "service/host/process/programs.hpp"
 #include "service/host/soak/chaos.hpp"
 #include "service/host/soak/plant.hpp"
+#include "service/host/soak/report/soak_report.hpp"
 #include "service/host/soak/segments.hpp"
-#include "service/host/soak/soak_report.hpp"
-#include "service/host/soak/timeline.hpp"
+#include "service/host/soak/watch/timeline.hpp"
 #include "support/machines.hpp"
 
 namespace meridian::soak {

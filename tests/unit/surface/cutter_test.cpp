@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/programs/surface/cutter.hpp"
+#include "service/programs/surface/shape/cutter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/programs/surface/nurbs_surface.hpp"
+#include "service/programs/surface/shape/nurbs_surface.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <functional>
 
-#include "service/programs/surface/cutter.hpp"
-#include "service/programs/surface/spline_basis.hpp"
-#include "service/programs/surface/surface_shape.hpp"
+#include "service/programs/surface/shape/cutter.hpp"
+#include "service/programs/surface/shape/spline_basis.hpp"
+#include "service/programs/surface/shape/surface_shape.hpp"
 #include "support/heap_watch.hpp"
 #include "support/surfaces.hpp"
 

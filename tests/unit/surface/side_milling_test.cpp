@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ruled walls cut by the flank, against walls whose undercut and overcut are known.
-#include "service/programs/surface/side_milling.hpp"
+#include "service/programs/surface/shape/side_milling.hpp"
 
 #include <gtest/gtest.h>
 

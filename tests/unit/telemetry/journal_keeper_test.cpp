@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/telemetry/journal_keeper.hpp"
+#include "service/recording/telemetry/journal/journal_keeper.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/telemetry/journal.hpp"
+#include "service/recording/telemetry/journal/journal.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/telemetry/recovery.hpp"
+#include "service/recording/telemetry/journal/recovery.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/telemetry/set_up_file.hpp"
+#include "service/recording/telemetry/journal/set_up_file.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/recording/telemetry/set_up_text.hpp"
+#include "service/recording/telemetry/journal/set_up_text.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <string>
 
 #include "meridian/units.hpp"
-#include "service/recording/telemetry/journal_entry.hpp"
-#include "service/recording/telemetry/sealed_text.hpp"
-#include "service/transport/messages.hpp"
+#include "service/recording/telemetry/journal/journal_entry.hpp"
+#include "service/recording/telemetry/journal/sealed_text.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::telemetry {
 namespace {

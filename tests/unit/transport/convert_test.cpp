@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/transport/convert.hpp"
+#include "service/transport/convert/convert.hpp"
 
 #include <gtest/gtest.h>
 

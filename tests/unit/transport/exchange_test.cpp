@@ -11,9 +11,9 @@
 #include <set>
 #include <thread>
 
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/followed.hpp"
 #include "service/transport/latency_since.hpp"
-#include "service/transport/messages.hpp"
 #include "service/transport/reader.hpp"
 #include "service/transport/waitset.hpp"
 #include "service/transport/writer.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/transport/loopback_sockets.hpp"
+#include "service/transport/cyclone/loopback_sockets.hpp"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

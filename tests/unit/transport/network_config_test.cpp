@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/transport/network_config.hpp"
+#include "service/transport/cyclone/network_config.hpp"
 
 #include <gtest/gtest.h>
 

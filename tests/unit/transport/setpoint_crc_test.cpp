@@ -6,9 +6,9 @@
 #include <cstring>
 #include <vector>
 
-#include "service/transport/convert.hpp"
-#include "service/transport/crc32c.hpp"
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/convert.hpp"
+#include "service/transport/convert/crc32c.hpp"
+#include "service/transport/convert/messages.hpp"
 
 namespace meridian::dds {
 namespace {

@@ -3,7 +3,7 @@
 #include <dds/ddsi/ddsi_serdata.h>
 #include <gtest/gtest.h>
 
-#include "service/transport/convert.hpp"
+#include "service/transport/convert/convert.hpp"
 #include "service/transport/writer.hpp"
 #include "support/private_domain.hpp"
 

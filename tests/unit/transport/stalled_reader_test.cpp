@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/transport/stalled_reader.hpp"
+#include "service/transport/cyclone/stalled_reader.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -14,7 +14,7 @@
 #include <string>
 #include <thread>
 
-#include "service/transport/messages.hpp"
+#include "service/transport/convert/messages.hpp"
 #include "service/transport/reader.hpp"
 #include "service/transport/writer.hpp"
 #include "support/private_domain.hpp"

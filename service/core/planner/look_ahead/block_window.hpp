@@ -10,7 +10,7 @@
 #include "meridian/planner/feed_mark.hpp"
 #include "service/core/path/index_ring.hpp"
 #include "service/core/planner/route/route_look_ahead.hpp"
-#include "service/core/planner/singular/pole_look_ahead.hpp"
+#include "service/core/planner/singular/pole/pole_look_ahead.hpp"
 
 namespace meridian {
 

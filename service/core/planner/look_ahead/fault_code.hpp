@@ -2,7 +2,7 @@
 #pragma once
 
 #include "meridian/path/block_reject.hpp"
-#include "service/core/planner/feed/joint_cells.hpp"
+#include "service/core/planner/feed/cells/joint_cells.hpp"
 
 namespace meridian {
 

@@ -10,8 +10,8 @@
 #include "meridian/kinematics/tip_over_base.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
-#include "service/core/planner/feed/joint_cells.hpp"
-#include "service/core/planner/singular/robot_pass.hpp"
+#include "service/core/planner/feed/cells/joint_cells.hpp"
+#include "service/core/planner/singular/robot/robot_pass.hpp"
 
 namespace meridian {
 namespace {

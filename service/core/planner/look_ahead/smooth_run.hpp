@@ -13,12 +13,12 @@
 #include "meridian/planner/relaxed_axis.hpp"
 #include "meridian/planner/rewind.hpp"
 #include "service/core/path/index_ring.hpp"
-#include "service/core/planner/feed/feed_raise.hpp"
-#include "service/core/planner/feed/feed_stop_margin.hpp"
-#include "service/core/planner/feed/rolling_feed.hpp"
+#include "service/core/planner/feed/rolling/feed_raise.hpp"
+#include "service/core/planner/feed/rolling/rolling_feed.hpp"
+#include "service/core/planner/feed/stop/feed_stop_margin.hpp"
 #include "service/core/planner/route/span_travel.hpp"
-#include "service/core/planner/singular/pole_corridor.hpp"
-#include "service/core/planner/singular/robot_passes.hpp"
+#include "service/core/planner/singular/pole/pole_corridor.hpp"
+#include "service/core/planner/singular/robot/robot_passes.hpp"
 
 namespace meridian {
 

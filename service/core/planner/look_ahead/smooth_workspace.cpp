@@ -11,7 +11,7 @@
 #include "meridian/kinematics/solve_driven.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "service/core/planner/look_ahead/fault_code.hpp"
-#include "service/core/planner/singular/robot_pass.hpp"
+#include "service/core/planner/singular/robot/robot_pass.hpp"
 
 namespace meridian {
 namespace {

@@ -10,11 +10,11 @@
 #include "meridian/planner/rest_to_rest.hpp"
 #include "meridian/planner/smooth_planner.hpp"
 #include "service/core/path/index_ring.hpp"
-#include "service/core/planner/feed/feed_raise.hpp"
-#include "service/core/planner/feed/leg_planner.hpp"
+#include "service/core/planner/feed/legs/leg_planner.hpp"
+#include "service/core/planner/feed/rolling/feed_raise.hpp"
 #include "service/core/planner/look_ahead/block_window.hpp"
 #include "service/core/planner/look_ahead/smooth_run.hpp"
-#include "service/core/planner/singular/pole_bounds.hpp"
+#include "service/core/planner/singular/pole/pole_bounds.hpp"
 
 namespace meridian {
 

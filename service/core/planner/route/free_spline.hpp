@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "service/core/planner/singular/pole_walls.hpp"
-#include "service/core/planner/singular/pole_zone.hpp"
+#include "service/core/planner/singular/pole/pole_walls.hpp"
+#include "service/core/planner/singular/pole/pole_zone.hpp"
 
 namespace meridian {
 

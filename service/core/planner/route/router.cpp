@@ -13,7 +13,7 @@
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
-#include "service/core/planner/singular/robot_pass.hpp"
+#include "service/core/planner/singular/robot/robot_pass.hpp"
 
 namespace meridian {
 namespace {

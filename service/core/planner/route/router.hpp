@@ -11,11 +11,11 @@
 #include "meridian/path/cl_block.hpp"
 #include "meridian/planner/approach.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
-#include "service/core/planner/feed/leg_planner.hpp"
+#include "service/core/planner/feed/legs/leg_planner.hpp"
 #include "service/core/planner/route/rewind_solutions.hpp"
 #include "service/core/planner/route/route_ahead.hpp"
 #include "service/core/planner/route/staging.hpp"
-#include "service/core/planner/singular/pole_look_ahead.hpp"
+#include "service/core/planner/singular/pole/pole_look_ahead.hpp"
 
 namespace meridian {
 

@@ -8,9 +8,9 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/kinematics/travel.hpp"
 #include "meridian/path/pose_at.hpp"
-#include "service/core/planner/feed/joint_cells.hpp"
+#include "service/core/planner/feed/cells/joint_cells.hpp"
 #include "service/core/planner/route/rewind_solutions.hpp"
-#include "service/core/planner/singular/pole_bounds.hpp"
+#include "service/core/planner/singular/pole/pole_bounds.hpp"
 
 namespace meridian {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "meridian/kinematics/machine_model.hpp"
 #include "meridian/planner/rewind.hpp"
-#include "service/core/planner/feed/joint_span.hpp"
+#include "service/core/planner/feed/cells/joint_span.hpp"
 
 namespace meridian {
 

@@ -4,15 +4,15 @@ import { Actions } from "./actions.js";
 import { Display } from "./display.js";
 import { Jog } from "./jog.js";
 import { Link } from "./link.js";
-import { NoView } from "./no_view.js";
+import { NoView } from "./picture/no_view.js";
 import { Operate } from "./operate.js";
 import { Program } from "./program.js";
 import { Report } from "./report.js";
-import { Scope } from "./scope.js";
+import { Scope } from "./scope/scope.js";
 import { Tabs } from "./tabs.js";
 import { Theme } from "./theme.js";
 import { Timing } from "./timing.js";
-import { canDraw, View } from "./view.js";
+import { canDraw, View } from "./picture/view.js";
 
 // A file that was opened from a disk has its run in itself, and no machine.
 const embedded = document.getElementById("report");

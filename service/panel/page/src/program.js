@@ -5,7 +5,7 @@ import { legendRows } from "./legend.js";
 import { Listing } from "./listing.js";
 import { heldName } from "./held.js";
 import { kOnlyWatches } from "./operate.js";
-import { Path } from "./path.js";
+import { Path } from "./picture/path.js";
 import { PlanOffset } from "./plan_offset.js";
 import { ProgramPath } from "./program_path.js";
 import { clock, fixed, shown, unit } from "./units.js";

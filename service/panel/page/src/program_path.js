@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulated path as the panel's process sends it: points of 20 numbers of 32 bits (service/panel/program_path.hpp).
+// The simulated path as the panel's process sends it: points of 20 numbers of 32 bits (service/panel/program/program_path.hpp).
 import { heldAt, timeByHeld } from "./held.js";
 
 const kWords = 20, kJoints = 14;

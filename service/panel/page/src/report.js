@@ -4,7 +4,7 @@ import uPlot from "uplot";
 import { byId, element, setShare, setText } from "./dom.js";
 import { heldAt, heldName, jointColour, timeByHeld } from "./held.js";
 import { legendRows } from "./legend.js";
-import { Path } from "./path.js";
+import { Path } from "./picture/path.js";
 import { clock, fixed } from "./units.js";
 
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();

@@ -8,7 +8,7 @@
 #include "meridian/geometry/vector3.hpp"
 #include "meridian/path/cl_block.hpp"
 #include "service/programs/cl/cl_summary.hpp"
-#include "service/programs/cl/feed.hpp"
+#include "service/programs/cl/interpreter/feed.hpp"
 #include "service/programs/cl/refusal.hpp"
 #include "service/programs/cl/remarks.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "meridian/units.hpp"
-#include "service/programs/cl/cycle_words.hpp"
+#include "service/programs/cl/interpreter/cycle_words.hpp"
 #include "service/programs/cl/text/written_text.hpp"
 
 namespace meridian::cl {

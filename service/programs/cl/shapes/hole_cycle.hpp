@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "service/programs/cl/dialect.hpp"
-#include "service/programs/cl/feed.hpp"
+#include "service/programs/cl/interpreter/feed.hpp"
 #include "service/programs/cl/refusal.hpp"
 #include "service/programs/cl/text/statement.hpp"
 

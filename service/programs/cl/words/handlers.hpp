@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "service/programs/cl/modal.hpp"
+#include "service/programs/cl/interpreter/modal.hpp"
 #include "service/programs/cl/refusal.hpp"
 #include "service/programs/cl/text/statement.hpp"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "service/programs/cl/modal.hpp"
+#include "service/programs/cl/interpreter/modal.hpp"
 #include "service/programs/cl/refusal.hpp"
 #include "service/programs/cl/text/statement.hpp"
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "service/programs/nc/codes.hpp"
 #include "service/programs/nc/modes.hpp"
+#include "service/programs/nc/words/codes.hpp"
 
 namespace meridian::nc {
 namespace siemens {

@@ -7,7 +7,7 @@
 
 #include "service/programs/cl/refusal.hpp"
 #include "service/programs/nc/nc_line.hpp"
-#include "service/programs/nc/variables.hpp"
+#include "service/programs/nc/words/variables.hpp"
 
 namespace meridian::nc {
 

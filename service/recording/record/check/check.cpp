@@ -10,10 +10,10 @@
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/recording/record/check/joint_check.hpp"
-#include "service/recording/record/check/path_check.hpp"
-#include "service/recording/record/check/rewind_check.hpp"
-#include "service/recording/record/check/tip_box_check.hpp"
+#include "service/recording/record/check/motion/joint_check.hpp"
+#include "service/recording/record/check/path/path_check.hpp"
+#include "service/recording/record/check/path/rewind_check.hpp"
+#include "service/recording/record/check/path/tip_box_check.hpp"
 
 namespace meridian::record {
 namespace {

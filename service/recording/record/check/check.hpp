@@ -10,9 +10,9 @@
 #include "meridian/expected.hpp"
 #include "meridian/kinematics/machine_model.hpp"
 #include "service/recording/record/check/check_report.hpp"
-#include "service/recording/record/check/checked_path.hpp"
-#include "service/recording/record/check/feed_overrides.hpp"
-#include "service/recording/record/file/recorded_limits.hpp"
+#include "service/recording/record/check/motion/feed_overrides.hpp"
+#include "service/recording/record/check/path/checked_path.hpp"
+#include "service/recording/record/file/recorded/recorded_limits.hpp"
 #include "service/recording/record/file/recording_reader.hpp"
 
 namespace meridian::record {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "service/recording/record/check/checked_path.hpp"
+#include "service/recording/record/check/path/checked_path.hpp"
 
 namespace meridian::record {
 

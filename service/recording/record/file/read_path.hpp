@@ -7,7 +7,7 @@
 #include "meridian/kinematics/tool_table.hpp"
 #include "service/programs/cl/cl_error.hpp"
 #include "service/programs/cl/cl_options.hpp"
-#include "service/recording/record/check/checked_path.hpp"
+#include "service/recording/record/check/path/checked_path.hpp"
 
 namespace meridian::record {
 

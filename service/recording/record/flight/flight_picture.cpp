@@ -12,7 +12,7 @@
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/analysis/plot/gnuplot.hpp"
-#include "service/recording/record/file/sent_positions.hpp"
+#include "service/recording/record/file/recorded/sent_positions.hpp"
 #include "service/recording/record/picture/joint_colours.hpp"
 #include "service/recording/record/words.hpp"
 

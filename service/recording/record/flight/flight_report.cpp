@@ -11,7 +11,7 @@
 #include "meridian/cycle/state_table.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
-#include "service/recording/record/file/sent_positions.hpp"
+#include "service/recording/record/file/recorded/sent_positions.hpp"
 #include "service/recording/record/words.hpp"
 #include "service/text/printed.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "meridian/kinematics/machine_model.hpp"
-#include "service/recording/record/check/checked_path.hpp"
+#include "service/recording/record/check/path/checked_path.hpp"
 #include "service/recording/record/file/record_error.hpp"
 #include "service/recording/record/file/recording_reader.hpp"
 

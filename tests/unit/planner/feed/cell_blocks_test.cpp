@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/cell_blocks.hpp"
+#include "service/core/planner/feed/cells/cell_blocks.hpp"
 
 #include <gtest/gtest.h>
 

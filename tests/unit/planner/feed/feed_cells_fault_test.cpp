@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/feed_cells.hpp"
+#include "service/core/planner/feed/cells/feed_cells.hpp"
 
 /// Where the cells of a path end before its time.
 #include <gtest/gtest.h>

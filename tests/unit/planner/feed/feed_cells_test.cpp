@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/feed_cells.hpp"
+#include "service/core/planner/feed/cells/feed_cells.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/core/planner/feed/feed_rounding.hpp"
+#include "service/core/planner/feed/cells/feed_rounding.hpp"
 #include "unit/planner/feed/made_cells.hpp"
 #include "unit/planner/feed/straight_grid.hpp"
 

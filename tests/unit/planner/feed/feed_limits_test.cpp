@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/feed_limits.hpp"
+#include "service/core/planner/feed/cells/feed_limits.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/feed_raise.hpp"
+#include "service/core/planner/feed/rolling/feed_raise.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/feed_rest.hpp"
+#include "service/core/planner/feed/cells/feed_rest.hpp"
 
 #include <gtest/gtest.h>
 

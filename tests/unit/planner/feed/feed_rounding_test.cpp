@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/feed_rounding.hpp"
+#include "service/core/planner/feed/cells/feed_rounding.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
-#include "service/core/planner/feed/feed_sample.hpp"
-#include "service/core/planner/feed/path_choice.hpp"
+#include "service/core/planner/feed/cells/feed_sample.hpp"
+#include "service/core/planner/feed/legs/path_choice.hpp"
 #include "support/family_machines.hpp"
 #include "support/machines.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/feed_sample.hpp"
+#include "service/core/planner/feed/cells/feed_sample.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/joints_at.hpp"
-#include "service/core/planner/feed/parabola.hpp"
+#include "service/core/planner/feed/solver/parabola.hpp"
 #include "unit/planner/feed/made_cells.hpp"
 
 namespace meridian::test::feed_sample {

@@ -14,7 +14,7 @@
 #include <random>
 #include <vector>
 
-#include "service/core/planner/feed/feed_stop_margin.hpp"
+#include "service/core/planner/feed/stop/feed_stop_margin.hpp"
 #include "unit/planner/feed/made_cells.hpp"
 
 namespace meridian::test::feed_stop_margin_drawn {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/jerk_rows.hpp"
+#include "service/core/planner/feed/solver/jerk_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/jerk_step.hpp"
+#include "service/core/planner/feed/solver/jerk_step.hpp"
 
 #include <gtest/gtest.h>
 

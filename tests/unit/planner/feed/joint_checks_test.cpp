@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/joint_cells.hpp"
+#include "service/core/planner/feed/cells/joint_cells.hpp"
 
 /// What is checked of joints between two places of a path.
 

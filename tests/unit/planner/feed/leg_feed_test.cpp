@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/leg_feed.hpp"
+#include "service/core/planner/feed/legs/leg_feed.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/leg_planner.hpp"
+#include "service/core/planner/feed/legs/leg_planner.hpp"
 
 #include <gtest/gtest.h>
 

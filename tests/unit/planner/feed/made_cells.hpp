@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "meridian/path/build_piece.hpp"
-#include "service/core/planner/feed/feed_cells.hpp"
-#include "service/core/planner/feed/jerk_step.hpp"
+#include "service/core/planner/feed/cells/feed_cells.hpp"
+#include "service/core/planner/feed/solver/jerk_step.hpp"
 #include "support/machines.hpp"
 
 /// Cells whose lengths and derivatives a test sets, and problems of the feed on them.

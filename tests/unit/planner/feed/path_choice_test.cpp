@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/path_choice.hpp"
+#include "service/core/planner/feed/legs/path_choice.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/core/planner/feed/leg_planner.hpp"
+#include "service/core/planner/feed/legs/leg_planner.hpp"
 #include "unit/planner/feed/staged_motion.hpp"
 
 /// Legs that are planned by themselves.

@@ -10,7 +10,7 @@
 #include "meridian/path/build_piece.hpp"
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/time_law.hpp"
-#include "service/core/planner/feed/rolling_feed.hpp"
+#include "service/core/planner/feed/rolling/rolling_feed.hpp"
 #include "support/machines.hpp"
 
 /// Paths for the rolling feed, and what it plans of them, window by window.

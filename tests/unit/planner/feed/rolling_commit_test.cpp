@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/rolling_feed.hpp"
+#include "service/core/planner/feed/rolling/rolling_feed.hpp"
 
 /// What stands of a planned window, its tail, and what stands in for a plan.
 

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <memory>
 
-#include "meridian/cycle/stop_margin.hpp"
+#include "meridian/cycle/stop/stop_margin.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/planner/joints_at.hpp"
 #include "meridian/planner/time_law.hpp"
-#include "service/core/planner/feed/leg.hpp"
+#include "service/core/planner/feed/legs/leg.hpp"
 #include "service/core/planner/route/staging.hpp"
 
 /// What was staged, checked by the derivatives of the joints alone.

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "meridian/cycle/stop_law.hpp"
-#include "service/core/planner/feed/feed_stop_margin.hpp"
+#include "meridian/cycle/stop/stop_law.hpp"
+#include "service/core/planner/feed/stop/feed_stop_margin.hpp"
 #include "unit/planner/feed/made_cells.hpp"
 
 /// A path whose bends a test sets, and what stops on it use and may use.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/stop_margin_table.hpp"
+#include "service/core/planner/feed/stop/stop_margin_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "meridian/cycle/stop_law.hpp"
+#include "meridian/cycle/stop/stop_law.hpp"
 #include "meridian/planner/time_law.hpp"
 
 namespace meridian::test::stop_margin_table {

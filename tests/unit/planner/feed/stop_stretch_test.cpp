@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/stop_stretch.hpp"
+#include "service/core/planner/feed/stop/stop_stretch.hpp"
 
 #include <gtest/gtest.h>
 

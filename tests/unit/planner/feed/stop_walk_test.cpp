@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/stop_walk.hpp"
+#include "service/core/planner/feed/stop/stop_walk.hpp"
 
 #include <gtest/gtest.h>
 

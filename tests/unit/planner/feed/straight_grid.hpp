@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "meridian/path/build_piece.hpp"
-#include "service/core/planner/feed/feed_cells.hpp"
+#include "service/core/planner/feed/cells/feed_cells.hpp"
 #include "support/machines.hpp"
 
 /// A grid of cells of straight spans.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/feed/two_pass.hpp"
+#include "service/core/planner/feed/solver/two_pass.hpp"
 
 #include <gtest/gtest.h>
 

@@ -13,8 +13,8 @@
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/planner/joints_at.hpp"
 #include "meridian/planner/rest_to_rest.hpp"
-#include "service/core/planner/singular/pole_corridor.hpp"
-#include "service/core/planner/singular/pole_time.hpp"
+#include "service/core/planner/singular/pole/pole_corridor.hpp"
+#include "service/core/planner/singular/pole/pole_time.hpp"
 #include "support/machines.hpp"
 #include "unit/planner/singular/leaning_path.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/singular/pass_fit.hpp"
+#include "service/core/planner/singular/robot/pass_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "service/core/planner/singular/pole_time.hpp"
+#include "service/core/planner/singular/pole/pole_time.hpp"
 #include "unit/planner/singular/wrist_path.hpp"
 
 namespace meridian::test::pass_fit {

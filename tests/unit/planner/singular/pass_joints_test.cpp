@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/singular/pass_joints.hpp"
+#include "service/core/planner/singular/robot/pass_joints.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/singular/pole_stretches.hpp"
+#include "service/core/planner/singular/pole/pole_stretches.hpp"
 
 /// Stretches that are long or near one another, and what room is beside them.
 

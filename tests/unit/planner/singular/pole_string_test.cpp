@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/singular/pole_string.hpp"
+#include "service/core/planner/singular/pole/pole_string.hpp"
 
 #include <gtest/gtest.h>
 

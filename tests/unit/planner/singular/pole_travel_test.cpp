@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/singular/pole_travel.hpp"
+#include "service/core/planner/singular/pole/pole_travel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/core/planner/singular/pole_probes.hpp"
-#include "service/core/planner/singular/pole_time.hpp"
+#include "service/core/planner/singular/pole/pole_probes.hpp"
+#include "service/core/planner/singular/pole/pole_time.hpp"
 #include "support/machines.hpp"
 #include "unit/planner/singular/leaning_path.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/singular/pole_zone.hpp"
+#include "service/core/planner/singular/pole/pole_zone.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "meridian/path/pose_at.hpp"
-#include "service/core/planner/singular/pole_time.hpp"
+#include "service/core/planner/singular/pole/pole_time.hpp"
 #include "support/machines.hpp"
 #include "unit/planner/singular/leaning_path.hpp"
 

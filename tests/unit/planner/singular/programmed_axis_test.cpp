@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/singular/programmed_axis.hpp"
+#include "service/core/planner/singular/pole/programmed_axis.hpp"
 
 #include <gtest/gtest.h>
 

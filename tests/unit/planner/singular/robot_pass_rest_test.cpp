@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
-#include "service/core/planner/singular/pass_joints.hpp"
-#include "service/core/planner/singular/robot_pass.hpp"
+#include "service/core/planner/singular/robot/pass_joints.hpp"
+#include "service/core/planner/singular/robot/robot_pass.hpp"
 #include "unit/planner/singular/wrist_path.hpp"
 
 /// Passes of a robot that begin or end at rest: where the path ends at the wrist singularity, and

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/singular/robot_pass.hpp"
+#include "service/core/planner/singular/robot/robot_pass.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "meridian/geometry/great_circle.hpp"
-#include "service/core/planner/singular/pass_joints.hpp"
+#include "service/core/planner/singular/robot/pass_joints.hpp"
 #include "unit/planner/singular/wrist_path.hpp"
 
 namespace meridian::test::robot_pass {

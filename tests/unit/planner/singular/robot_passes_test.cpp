@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "service/core/planner/singular/robot_passes.hpp"
+#include "service/core/planner/singular/robot/robot_passes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "service/core/planner/singular/pole_stretches.hpp"
+#include "service/core/planner/singular/pole/pole_stretches.hpp"
 #include "support/machines.hpp"
 #include "unit/planner/singular/leaning_path.hpp"
 

@@ -3,9 +3,9 @@
 
 #include "meridian/geometry/great_circle.hpp"
 #include "meridian/kinematics/kinematics.hpp"
-#include "service/core/planner/singular/pole_probes.hpp"
-#include "service/core/planner/singular/pole_time.hpp"
-#include "service/core/planner/singular/pole_walls.hpp"
+#include "service/core/planner/singular/pole/pole_probes.hpp"
+#include "service/core/planner/singular/pole/pole_time.hpp"
+#include "service/core/planner/singular/pole/pole_walls.hpp"
 #include "support/machines.hpp"
 #include "unit/planner/singular/leaning_path.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/path/pose_at.hpp"
-#include "service/core/planner/singular/pole_time.hpp"
-#include "service/core/planner/singular/robot_pass.hpp"
+#include "service/core/planner/singular/pole/pole_time.hpp"
+#include "service/core/planner/singular/robot/robot_pass.hpp"
 #include "support/family_machines.hpp"
 
 /// A straight path of a 6R robot past its wrist singularity, in the middle of its reach or over its
