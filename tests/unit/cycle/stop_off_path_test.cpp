@@ -90,6 +90,74 @@ TEST(StopOffPath, OffThePathTheDrivesOfAStageKeepTheirFaultLimitsToo) {
   }
 }
 
+/// The drives of the stage at `n` of `steps` equal parts of a stop.
+std::array<LimitedVector, 401> drives_along(const MachineModel& machine, CycleState& state) {
+  std::array<LimitedVector, 401> drives;
+  for (std::size_t n = 0; n < drives.size(); ++n) {
+    state.stop.time = duration_of(state.stop) * static_cast<double>(n) / 400;
+    put_off_path(state, machine.joint_count);
+    drives[n] = limited_of(machine, state.joints);
+  }
+  return drives;
+}
+
+/// A fast turn bends the motion of the drives by itself: deceleration and its share add to the
+/// jerk.
+TEST(StopOffPath, OffThePathTheDrivesOfAStageKeepTheirJerkWhereAFastTurnBendsTheirMotion) {
+  MachineModel machine = hybrid_machine();
+  for (JointSpec& joint : machine.joints) {
+    joint.limits.fault_acceleration = 1e7;
+    joint.limits.fault_jerk = 1e10;
+  }
+  for (const double turn : {-0.8, -0.3, 0.3, 0.8}) {
+    for (const double jerk : {4000.0, 10'000.0}) {
+      SCOPED_TRACE(testing::Message() << turn << " " << jerk);
+      for (JointSpec& drive : machine.stage_drives) {
+        drive.limits.fault_acceleration = 800;
+        drive.limits.fault_jerk = jerk;
+      }
+      CycleState state;
+      state.stop = stop_off_path(machine, {20, 30, 200, 0.1, 0.3}, {0, 0, 0, turn, 0});
+      const auto drives = drives_along(machine, state);
+      const double dt = duration_of(state.stop) / 400;
+      for (int i = machine.joint_count; i < limited_count(machine); ++i) {
+        for (std::size_t n = 3; n < drives.size(); ++n) {
+          const double third =
+              drives[n][i] - 3 * drives[n - 1][i] + 3 * drives[n - 2][i] - drives[n - 3][i];
+          EXPECT_LE(std::abs(third) / (dt * dt * dt), jerk * (1 + 1e-3));
+        }
+      }
+    }
+  }
+}
+
+/// Of what the curvature takes more than three quarters of, a quarter is used: the stop ends.
+TEST(StopOffPath, BesideAStageAQuarterOfALimitIsUsedWhereItsCurvatureLeavesLess) {
+  MachineModel machine = hybrid_machine();
+  const JointVector at{20, 30, 200, 0.1, 0.3}, direction{0, 0, 0, 0.8, 0};
+  constexpr double kStep_s = 1e-4;
+  const auto drive_at = [&](double t, int i) {
+    JointVector q = at;
+    q[3] += t * direction[3];
+    return limited_of(machine, q)[i];
+  };
+  for (std::size_t n = 0; n < kStageDrives; ++n) {
+    const int i = machine.joint_count + static_cast<int>(n);
+    const double after = drive_at(kStep_s, i), before = drive_at(-kStep_s, i);
+    const double rate = std::abs(after - before) / (2 * kStep_s);
+    const double bend = std::abs(after - 2 * drive_at(0, i) + before) / (kStep_s * kStep_s);
+    for (const double share : {0.1, 0.5, 0.7, 0.8, 2.0}) {  // of the limit, taken by curvature
+      for (JointSpec& drive : machine.stage_drives) {
+        drive.limits.fault_acceleration = drive.limits.fault_jerk = 1e9;
+      }
+      const double limit = bend / share;
+      machine.stage_drives[n].limits.fault_acceleration = limit;
+      const StopMargin margin = authority_beside_stage(machine, at, direction, {1e9, 1e12});
+      EXPECT_NEAR(margin.accel * rate / limit, std::max(1 - share, 0.25), 1e-3) << share;
+    }
+  }
+}
+
 TEST(StopOffPath, OffThePathItIsOverAtOnceWhereNothingMoves) {
   const MachineModel machine = machine_with_faults(1);
   const JointVector at{1, 2, 3, 0, 0};
