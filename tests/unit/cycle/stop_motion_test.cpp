@@ -132,6 +132,29 @@ TEST(StopMotion, AFaultStopLeavesThePlanOnlyForALawThatSlowsDownSoAnyway) {
   EXPECT_FALSE(is_reckoned_at(50, -3100)) << "harder than the law ever is";
 }
 
+/// What a law has further up is not what it has here where its margin changes with the speed.
+TEST(StopMotion, AFaultStopLeavesThePlanOnlyWhereTheMarginIsTheOneOfTheSpeedItComesDownFrom) {
+  struct Case {
+    double velocity;  // up to which 3000 and 120 000 are granted; 0: up to any
+    double rest_accel, rest_jerk;
+    bool is_reckoned;
+  };
+  for (const Case& c :
+       {Case{0, 0, 0, true}, {200, 3000, 900'000, false}, {200, 9000, 120'000, false}}) {
+    Cutting one;
+    auto& piece = const_cast<TimePiece&>(*one.world.reader.piece());
+    piece.authority_velocity = c.velocity;
+    piece.rest_fault_accel = c.rest_accel;
+    piece.rest_fault_jerk = c.rest_jerk;
+    PathState& here = one.world.state.on_path;
+    here.ds = 60;
+    here.dds = -2000;
+    const StopMargin authority = authority_of(piece, StopKind::kFault, here);
+    EXPECT_EQ(is_reckoned_with(one.cycle(), authority), c.is_reckoned)
+        << c.rest_accel << " " << c.rest_jerk;
+  }
+}
+
 TEST(StopMotion, AFaultStopLeavesASmoothPlanThatIsSlowForWhatLiesBetweenRestAndItsSlowMargin) {
   Cutting one;
   auto& piece = const_cast<TimePiece&>(*one.world.reader.piece());
