@@ -139,6 +139,32 @@ TEST(RobotPassesSpans, LeadThroughTheWristAndKeepTheRestOfThePathExact) {
   EXPECT_LT(std::abs(followed.joints[robot::kRoll] - one.start.joints[robot::kRoll]), 0.2);
 }
 
+TEST(RobotPassesSpans, LieAboutTheNearestPointOfTheSingularityAsFarToEitherSide) {
+  for (const double nearest : {40.0, 40.06, 40.5}) {
+    Passed one(WristPath(1e-4), 80, nearest);
+    one.run();
+    const auto driven = one.driven();
+    ASSERT_FALSE(driven.empty());
+    const BandSpan& last = driven.back().band;
+    const double before = nearest - driven.front().band.u0;
+    EXPECT_NEAR(last.u0 + last.length - nearest, before, 0.125) << "the distance of two measures";
+  }
+}
+
+TEST(RobotPassesSpans, ReachAsFarAsAPassMayWhereTheRollHasToTurnAndTheToleranceIsWide) {
+  WristPath path(1e-4);
+  path.model.joints[robot::kBend].limits.travel_min = -1e-3;  // the bend stays on its side
+  Passed one(path, 120, 60);
+  one.start.axis_tolerance_rad = 0.1;
+  one.run();
+  expect_whole(one);
+  const auto driven = one.driven();
+  ASSERT_FALSE(driven.empty());
+  const BandSpan& last = driven.back().band;
+  EXPECT_NEAR(driven.front().band.u0, 60 - kPassReach_mm, 0.125);
+  EXPECT_NEAR(last.u0 + last.length - driven.front().band.u0, 2 * kPassReach_mm, 1e-9);
+}
+
 TEST(RobotPassesSpans, AreThePathItselfWhereItStaysOutOfTheTolerance) {
   for (const double beside_rad : {0.004, 0.05}) {
     Passed one(WristPath(beside_rad), 60, 30);
