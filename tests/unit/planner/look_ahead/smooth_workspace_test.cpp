@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
 #include <vector>
 
 #include "meridian/kinematics/kinematics.hpp"
@@ -169,6 +172,26 @@ TEST(SmoothWorkspace, RunsOntoThePoleAlongItAndOffAgain) {
   EXPECT_EQ(one.rests(), 1);
 }
 
+TEST(SmoothWorkspace, AnAxisThatRoundingAloneKeepsOffThePoleIsOnIt) {
+  const auto planned = [](double off) {
+    auto one =
+        std::make_unique<Planned>(SmoothSettings{Transition::kSmooth, 0, 0}, Vector3::UnitZ());
+    const Vector3 rounded = Vector3(off, -off, 1).normalized();
+    one->cut({5, 0, 0}, rounded);
+    one->cut({0, 5, 0}, rounded);
+    one->cut({5, 0, 0}, rounded);
+    one->add(BlockKind::kEnd);
+    return one;
+  };
+  const auto exact = planned(0)->paths(), rounded = planned(1e-11)->paths();
+  ASSERT_EQ(rounded.size(), exact.size());
+  for (std::size_t n = 0; n < exact.size(); ++n) {
+    EXPECT_EQ(rounded[n].joints_begin, exact[n].joints_begin) << n;
+    EXPECT_EQ(rounded[n].joints_end, exact[n].joints_end) << n;
+    EXPECT_EQ(rounded[n].is_free_driven, exact[n].is_free_driven) << n;
+  }
+}
+
 TEST(SmoothWorkspace, KeepsHalfOfTheAxisToleranceForThePoleBesideIt) {
   const auto leaning = [](double x, double y) { return Vector3(x, y, 1).normalized(); };
   for (const PolePolicy policy : {PolePolicy::kRelax, PolePolicy::kExact}) {
@@ -212,6 +235,52 @@ TEST(SmoothWorkspace, RefusesABlockThatLeavesTravelAndRestsAheadOfIt) {
   const auto times = one.times();
   ASSERT_FALSE(times.empty());
   EXPECT_NEAR(state_at(times.back(), times.back().duration).ds, 0, 1e-9);
+}
+
+/// Every path piece that was published, the cycle going on wherever there is no room.
+struct Followed : Planned {
+  explicit Followed(const MachineModel& m) : Planned({Transition::kSmooth, 0, 0}, kTilted, m) {
+    reader.set_epoch(2);
+  }
+  void plan(ClBlock block) {
+    block.sequence = sequence++;
+    for (last = {PlanStatus::kNoRoom}; last.status == PlanStatus::kNoRoom;) {
+      last = planner.plan(block, writer);
+      for (const PathPiece& piece : paths()) all[piece.index] = piece;
+      if (last.status == PlanStatus::kNoRoom && reader.advance() == nullptr) return;
+    }
+  }
+  MotionReader reader{*port};
+  std::map<std::uint64_t, PathPiece> all;
+};
+
+TEST(SmoothWorkspace, ARewindBeginsWithTheJointsOfTheRunAndTheRunGoesOnWithItsOwn) {
+  MachineModel model = lai_machine();
+  model.rewind_policy = RewindPolicy::kRetract;
+  Followed one(model);
+  ClBlock block;
+  block.feed_meaning = FeedMeaning::kTip;
+  block.feed = 50;
+  for (int n = 1; n <= 400; ++n) {
+    const double azimuth = 0.05 * n;
+    block.tip_mm = {0.5 * n, 0, 0};
+    block.axis = {std::sin(0.3) * std::cos(azimuth), std::sin(0.3) * std::sin(azimuth),
+                  std::cos(0.3)};
+    one.plan(block);
+  }
+  block.kind = BlockKind::kEnd;
+  one.plan(block);
+  ASSERT_EQ(one.last.status, PlanStatus::kOk);
+  int rewinds = 0;
+  const PathPiece* before = nullptr;
+  for (const auto& [index, piece] : one.all) {
+    rewinds += piece.motion == MotionKind::kRewind;
+    for (std::size_t i = 0; i < 5 && before != nullptr; ++i) {
+      EXPECT_NEAR(piece.joints_begin[i], before->joints_end[i], 1e-6) << index << " " << i;
+    }
+    before = &piece;
+  }
+  EXPECT_GT(rewinds, 0);
 }
 
 TEST(SmoothWorkspace, BranchesAreForMachinesWithARedundantJointAndForRobots) {
