@@ -49,12 +49,13 @@ void SmoothRun::end_ahead_of_fault() noexcept {
 /// Names the block ahead of which the machine comes to rest: of the first span that is held back
 /// beside the pole, or else of the last that was handed on.
 void SmoothRun::fail_ahead() noexcept {
+  const BandSpan none;
   const BandSpan* at = corridor_.first_held();
-  if (at == nullptr && spans_.end_index() > 0) at = &spans_.back().band;
+  if (at == nullptr) at = spans_.end_index() > 0 ? &spans_.back().band : &none;
   const PathFault fault = band_.has_failed()
                               ? PathFault{PathFault::Kind::kTooLong, -1, 0}
                               : PathFault{PathFault::Kind::kBranch, redundant_joint(model_), 0};
-  fail(fault, at != nullptr ? at->sequence : 0, at != nullptr ? at->line : 0);
+  fail(fault, at->sequence, at->line);
 }
 
 }  // namespace meridian

@@ -13,69 +13,14 @@
 #include "meridian/path/pose_at.hpp"
 #include "meridian/planner/time_law.hpp"
 #include "support/machines.hpp"
-#include "unit/planner/look_ahead/published.hpp"
+#include "unit/planner/look_ahead/ran_blocks.hpp"
 
 namespace meridian::test::smooth_run {
 namespace {
 
-using Status = SmoothRun::Status;
-
-constexpr double kTolerance_rad = 1.745e-3;
-const ToolPose kBegin{Vector3(0, 30, -20), Vector3(0.3, 0.2, 1).normalized()};
-
-ClBlock cut_to(const ToolPose& end, std::uint64_t sequence, double feed = 50) {
-  ClBlock block;
-  block.sequence = sequence;
-  block.line = static_cast<std::uint32_t>(sequence) + 100;
-  block.tip_mm = to_array(end.tip);
-  block.axis = to_array(end.axis);
-  block.feed_meaning = FeedMeaning::kTip;
-  block.feed = feed;
-  return block;
-}
-
-/// A run of blocks from kBegin on, and what it published.
-struct Ran : Published {
-  explicit Ran(const MachineModel& m = bench_machine(), const ToolPose& from = kBegin)
-      : model(m), pose(from) {
-    raise.begin(model.tool_length_mm);
-    start.pose = start.programmed = from;
-    start.joints = solve(model, model.tool_length_mm, from, 0, {}).q;
-    start.tool_length_mm = model.tool_length_mm;
-    start.epoch = 3;
-    start.path_index = 70;
-    start.window = 11;
-    begin();
-  }
-  void begin() {
-    BandTolerance tolerance;
-    tolerance.pole = to_array(pole_direction(model));
-    run.begin(start, tolerance, kTolerance_rad);
-  }
-  Status cut(const ToolPose& end, double feed = 50) {
-    run.take(cut_to(pose = end, sequence++, feed));
-    return status = run.publish(writer);
-  }
-  /// `count` blocks of `length` mm along x.
-  void cut_straight(int count, double length, double feed = 50) {
-    for (int n = 0; n < count; ++n) {
-      cut({pose.tip + Vector3(length, 0, 0), pose.axis}, feed);
-    }
-  }
-  Status finish() {
-    run.finish();
-    return status = run.publish(writer);
-  }
-
-  MachineModel model;
-  FeedRaise raise{model};
-  SmoothRun run{model, raise};
-  MotionReader reader{*port};
-  RunStart start;
-  ToolPose pose;
-  std::uint64_t sequence = 40;
-  Status status = Status::kNeedsBlocks;
-};
+using ran_blocks::kTolerance_rad;
+using ran_blocks::Ran;
+using ran_blocks::Status;
 
 TEST(SmoothRun, AShortPathIsOneWindowFromRestToRest) {
   Ran one;
@@ -264,51 +209,6 @@ TEST(SmoothRun, IsNoFasterThanTheFeedOfABlockOrOfTheMachine) {
       EXPECT_EQ(piece.feed_mm_per_s, std::min(feed, 20.0));
     }
     EXPECT_NEAR(fastest, std::min(feed, 20.0), 0.01 * feed);
-  }
-}
-
-TEST(SmoothRun, EndsAheadOfABlockThatLeavesTravelAndNamesIt) {
-  MachineModel model = bench_machine();
-  const JointVector begin = solve(model, model.tool_length_mm, kBegin, 0, {}).q;
-  ToolPose at = kBegin;
-  at.tip[0] += 51;  // on the 26th block
-  const JointVector end = solve(model, model.tool_length_mm, at, 0, {}).q;
-  int joint = 0;
-  for (int i = 1; i < 3; ++i) {
-    if (std::abs(end[i] - begin[i]) > std::abs(end[joint] - begin[joint])) joint = i;
-  }
-  JointLimits& limits = model.joints[joint].limits;
-  (end[joint] > begin[joint] ? limits.travel_max : limits.travel_min) = end[joint];
-  Ran one(model);
-  for (int n = 0; n < 150 && !one.run.has_fault(); ++n) one.cut_straight(1, 2);
-  ASSERT_TRUE(one.run.has_fault());
-  one.reader.set_epoch(3);
-  for (int n = 0; n < 5000 && one.run.publish(one.writer) != Status::kFailed; ++n) {
-    (void)one.reader.advance();
-  }
-  EXPECT_EQ(one.run.publish(one.writer), Status::kFailed);
-  EXPECT_EQ(one.run.fault().kind, PathFault::Kind::kTravel);
-  EXPECT_EQ(one.run.faulty_block().joint, joint);
-  EXPECT_EQ(one.run.faulty_block().sequence, 40U + 25);
-  EXPECT_EQ(one.run.faulty_block().line, 140U + 25);
-  const ToolPose rest = forward(model, model.tool_length_mm, one.run.joints());
-  EXPECT_GT((rest.tip - kBegin.tip)[0], 49.9) << "where the block before ends, or behind it";
-  EXPECT_LT((rest.tip - kBegin.tip)[0], 51);
-}
-
-TEST(SmoothRun, NamesTheBlockThatLeavesTravelAmongShortOnes) {
-  for (const int wanted : {28, 29, 30, 31, 32, 33}) {
-    MachineModel model = bench_machine();
-    ToolPose at = kBegin;
-    at.tip[0] += 48.05 + 0.1 * wanted;  // in the middle of the short block
-    model.joints[0].limits.travel_max = solve(model, model.tool_length_mm, at, 0, {}).q[0];
-    Ran one(model);
-    one.cut_straight(24, 2);
-    one.cut_straight(100, 0.1);
-    for (int n = 0; n < 150 && !one.run.has_fault(); ++n) one.cut_straight(1, 2);
-    ASSERT_TRUE(one.run.has_fault());
-    EXPECT_EQ(one.run.faulty_block().sequence, static_cast<std::uint64_t>(40 + 24 + wanted));
-    EXPECT_EQ(one.run.faulty_block().line, static_cast<std::uint32_t>(140 + 24 + wanted));
   }
 }
 
