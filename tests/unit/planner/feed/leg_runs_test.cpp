@@ -45,7 +45,7 @@ TEST(LegRuns, LeadPastThePoleAtAnyDistanceInsideEveryLimit) {
   };
   constexpr std::array kCases{Case{{1e-2, 0.3, -0.3}, 6.57}, Case{{3e-4, 0.3, -0.3}, 6.58},
                               Case{{1e-5, 0.3, -0.3}, 6.94}, Case{{1e-5, 0.02, -0.02}, 6.03},
-                              Case{{1e-5, 0.15, 0.0}, 3.42}};
+                              Case{{1e-5, 0.15, 0.0}, 3.42}, Case{{1e-5, 0.0, -0.3}, 3.53}};
   for (const Case& a : kCases) {
     SCOPED_TRACE(testing::Message() << a.leg.beside << " from " << a.leg.begin);
     Planned one(bench_machine());
