@@ -244,10 +244,10 @@ struct Followed : Planned {
   }
   void plan(ClBlock block) {
     block.sequence = sequence++;
-    for (last = {PlanStatus::kNoRoom}; last.status == PlanStatus::kNoRoom;) {
+    for (;;) {
       last = planner.plan(block, writer);
       for (const PathPiece& piece : paths()) all[piece.index] = piece;
-      if (last.status == PlanStatus::kNoRoom && reader.advance() == nullptr) return;
+      if (last.status != PlanStatus::kNoRoom || reader.advance() == nullptr) return;
     }
   }
   MotionReader reader{*port};
