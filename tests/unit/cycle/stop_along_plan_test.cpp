@@ -16,8 +16,8 @@ TEST(StopAlongPlan, GoesOnAlongThePathByTheSpeedThatItHas) {
   for (int n = 0; n < 200; ++n) {
     const PathState before = state.on_path;
     one.world.run();
-    const double way = 0.5 * (before.ds + state.on_path.ds) * dt;
-    EXPECT_NEAR(state.on_path.s - before.s, way, 1e-3 * way) << n;
+    const double travelled = 0.5 * (before.ds + state.on_path.ds) * dt;
+    EXPECT_NEAR(state.on_path.s - before.s, travelled, 1e-3 * travelled) << n;
     EXPECT_LT(state.on_path.ds, before.ds) << n;
   }
   EXPECT_GT(state.on_path.s, begin + 10);
