@@ -286,7 +286,7 @@ inline void write_record(Cycle& c) noexcept {
 /// `in.cycle` grows by 1 + `in.lost_periods` from call to call; plan time goes on by as many
 /// periods, without output for those that were lost. The first call finds `state` in Off. The
 /// result is a function of the arguments alone: the same inputs give the same setpoints bit for
-/// bit. RT: cycle. Proof: tests/unit/cycle/step_*_test.cpp, tests/property/rt.
+/// bit. RT: cycle. Proof: tests/unit/cycle/step_*_test.cpp, tests/property/cycle.
 inline void step(const MachineModel& machine, CycleState& state, MotionReader& reader,
                  const CycleInputs& in, StepOutput& out) noexcept {
   const double dt = static_cast<double>(machine.cycle_ns) * 1e-9;
