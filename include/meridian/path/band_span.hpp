@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
@@ -9,9 +10,10 @@
 
 namespace meridian {
 
-/// One committed span of the band spline: the smooth path between two of its knots. Spans follow
-/// one another without a gap and with three continuous derivatives by u; a committed span never
-/// changes. The first begins and the last ends on a CL block, where the machine is at rest.
+/// One committed span of the band spline: the smooth path between two of its knots, or a part of
+/// it. Spans follow one another without a gap and with three continuous derivatives by u; a
+/// committed span never changes. The first begins and the last ends on a CL block, where the
+/// machine is at rest.
 ///
 /// u is the chord length of the CL polyline, du² = |dP|² + (50 mm/rad · |dK|)²: along the spline it
 /// is nearly, not exactly, the path length, so |dP/du| is about 1 on a straight line, smaller where
@@ -37,6 +39,20 @@ struct BandSpan {
   double turn_rad_per_s = std::numeric_limits<double>::infinity();
 };
 static_assert(std::is_trivially_copyable_v<BandSpan>);
+
+/// `span` from x = `from` on, `length` long.
+[[nodiscard]] inline BandSpan part_of_span(const BandSpan& span, double from,
+                                           double length) noexcept {
+  BandSpan out = span;
+  out.u0 = span.u0 + from;
+  out.length = length;
+  for (auto& c : out.c) {  // Taylor shift
+    for (std::size_t round = 0; round < 4; ++round) {
+      for (std::size_t k = 4; k-- > round;) c[k] += from * c[k + 1];
+    }
+  }
+  return out;
+}
 
 /// Where a block ends on the spline: within tolerance of its programmed pose. Blocks without length
 /// (du < 1e-6 mm) have none.

@@ -21,6 +21,9 @@ constexpr std::int64_t kKnotsAhead = 7;
 /// the ring holds less what the knots look ahead and back.
 constexpr std::int64_t kWindowVertices = kVertexCapacity - 4 * kVertexReach;
 constexpr std::int64_t kMinWindow = 8;
+/// A span is cut where its blocks in inverse time differ so much in speed, into no less than that
+/// share of it.
+constexpr double kSpeedJump = 4, kMinPart = 0.02;
 
 std::size_t capacity_for(const BandTuning& tuning) noexcept {
   return std::bit_ceil(2 * static_cast<std::size_t>(tuning.window) + 64);
@@ -45,6 +48,7 @@ struct BandSpline::Workspace {
     checked = 4;
     next_span = committed = 4;
     point_segment = block_end = axis_mark = 0;
+    emitted_u = 0;
     is_last = has_failed = false;
   }
 
@@ -143,26 +147,48 @@ struct BandSpline::Workspace {
   }
 
   void emit() noexcept {
-    const std::int64_t s = next_span++;
+    const std::int64_t s = next_span;
+    const double whole = knots.t(s + 1) - knots.t(s);
+    std::int64_t i = line.segment_at(emitted_u, knots.segment(s)) + 1;
+    const double end = find_cut(i, knots.t(s + 1), kMinPart * whole);
     span = {};
     span.u0 = knots.t(s);
-    span.length = knots.t(s + 1) - span.u0;
+    span.length = whole;
     span.c = quartic_of(knots, points, s);
-    std::int64_t i = line.segment_at(span.u0, knots.segment(s)) + 1;
+    if (end - emitted_u < whole) {
+      span = part_of_span(span, emitted_u - span.u0, end - emitted_u);
+      span.u0 = emitted_u;
+    }
+    emitted_u = end;
+    if (end == knots.t(s + 1)) ++next_span;
     block_end = std::max(block_end, i);
     span.sequence = line[i].sequence;
     span.line = line[i].line;
     for (;; ++i) {
       span.feed_mm_per_s = std::min(span.feed_mm_per_s, line[i].feed_mm_per_s);
       span.u_speed_mm_per_s = std::min(span.u_speed_mm_per_s, line[i].u_speed_mm_per_s);
-      if (i >= line.last() || line[i].u >= knots.t(s + 1)) break;
+      if (i >= line.last() || line[i].u >= end) break;
     }
-    speeds.go_to(line, span.u0, knots.t(s + 1), i);
+    speeds.go_to(line, span.u0, end, i);
     if (std::isfinite(span.u_speed_mm_per_s)) {
       span.feed_mm_per_s = std::min(span.feed_mm_per_s, speeds.tip_mm_per_s());
       span.turn_rad_per_s = speeds.turn_rad_per_s();
       share_short_times(i);
     }
+  }
+
+  /// Where the span from `emitted_u`, on the segment that ends in vertex `i`, has to end: `to`, or
+  /// ahead of it where a block in inverse time follows one of quite another speed. The faster one
+  /// would take the slower one's. Short blocks have their times together.
+  [[nodiscard]] double find_cut(std::int64_t i, double to, double min_part) const noexcept {
+    for (; i < line.last() && line[i].u + min_part < to; ++i) {
+      const BandVertex &a = line[i], &b = line[i + 1];
+      if (a.is_short_in_time && b.is_short_in_time) continue;
+      const auto [slow, fast] = std::minmax(a.u_speed_mm_per_s, b.u_speed_mm_per_s);
+      const bool is_jump = std::isfinite(fast) && fast > kSpeedJump * slow;
+      if (is_jump && line[i].u > emitted_u + min_part) return line[i].u;
+    }
+    return to;
   }
 
   /// Of blocks in inverse time that are shorter than the tolerances, up to the segment that ends in
@@ -194,9 +220,10 @@ struct BandSpline::Workspace {
   BandSpan span;
   std::int64_t first = 1;      ///< first control point that is not final
   std::int64_t checked = 4;    ///< spans before this one are bounded
-  std::int64_t next_span = 4;  ///< to be handed out
+  std::int64_t next_span = 4;  ///< to be handed out, from `emitted_u` on
   std::int64_t committed = 4;  ///< spans before this one are final
   std::int64_t point_segment = 0, block_end = 0, axis_mark = 0;
+  double emitted_u = 0;
   bool is_last = false;  ///< the last window is done
   bool has_failed = false;
 };
@@ -228,7 +255,7 @@ const BandSpan* BandSpline::next() noexcept {
 
 std::optional<BlockEnd> BandSpline::next_block_end() noexcept {
   Workspace& w = *workspace_;
-  const double end = w.knots.t(w.next_span);
+  const double end = w.emitted_u;
   for (; w.block_end <= w.line.last() && w.line[w.block_end].u <= end; ++w.block_end) {
     const BandVertex& vertex = w.line[w.block_end];
     if (!vertex.ends_block) continue;

@@ -53,25 +53,30 @@ bool is_same(const BandRun& a, const BandRun& b) {
   return true;
 }
 
-TEST(BandStream, HasThreeContinuousDerivativesAcrossSpansAndWindows) {
-  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-    const BandRun run = run_band(HostilePath(seed).make(16));
-    ASSERT_GT(run.spans.size(), 200U);
-    for (std::size_t n = 1; n < run.spans.size(); ++n) {
-      const BandSpan &a = run.spans[n - 1], &b = run.spans[n];
-      ASSERT_EQ(a.u0 + a.length, b.u0) << "seed " << seed << " span " << n;
-      const auto end = pose_on(a.c, Jet<3>::variable(a.length));
-      const auto begin = pose_on(b.c, Jet<3>::variable(0.0));
-      double size = 1;  // a derivative over the span, in mm and rad
-      for (int order = 0; order <= 3; ++order, size *= std::min(a.length, b.length)) {
-        for (int i = 0; i < 3; ++i) {
-          const double tip = end.tip[i].derivative(order) - begin.tip[i].derivative(order);
-          const double axis = end.axis[i].derivative(order) - begin.axis[i].derivative(order);
-          ASSERT_LE(std::abs(tip) * size, 1e-11) << "seed " << seed << " span " << n;
-          ASSERT_LE(std::abs(axis) * size, 1e-13) << "seed " << seed << " span " << n;
-        }
+void expect_smooth_joins(const BandRun& run) {
+  for (std::size_t n = 1; n < run.spans.size(); ++n) {
+    const BandSpan &a = run.spans[n - 1], &b = run.spans[n];
+    ASSERT_EQ(a.u0 + a.length, b.u0) << "span " << n;
+    const auto end = pose_on(a.c, Jet<3>::variable(a.length));
+    const auto begin = pose_on(b.c, Jet<3>::variable(0.0));
+    double size = 1;  // a derivative over the span, in mm and rad
+    for (int order = 0; order <= 3; ++order, size *= std::min(a.length, b.length)) {
+      for (int i = 0; i < 3; ++i) {
+        const double tip = end.tip[i].derivative(order) - begin.tip[i].derivative(order);
+        const double axis = end.axis[i].derivative(order) - begin.axis[i].derivative(order);
+        ASSERT_LE(std::abs(tip) * size, 1e-11) << "span " << n;
+        ASSERT_LE(std::abs(axis) * size, 1e-13) << "span " << n;
       }
     }
+  }
+}
+
+TEST(BandStream, HasThreeContinuousDerivativesAcrossSpansAndWindows) {
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const BandRun run = run_band(HostilePath(seed).make(16));
+    ASSERT_GT(run.spans.size(), 200U);
+    expect_smooth_joins(run);
   }
 }
 
@@ -183,6 +188,38 @@ TEST(BandStream, TakesTheTimesOfTheShortestBlocksInInverseTimeAndNoMore) {
   }
   EXPECT_GE(min_s, time_s * (1 - 1e-9));
   EXPECT_LE(min_s, 1.2 * time_s);
+}
+
+/// Where its span was as slow as the slowest block on it, a block of 0.05 mm in 0.1 s took 20 s.
+TEST(BandStream, CutsASpanWhereAFastBlockInInverseTimeMeetsASlowOne) {
+  struct Timed {
+    double length_mm, time_s;
+  };
+  const std::vector<Timed> timed = {{5, 0.1},    {0.05, 0.1}, {0.3, 60},
+                                    {0.2, 0.05}, {0.4, 30},   {5, 0.1}};
+  std::vector<ClBlock> blocks = {line_to(0, {0, 0, 0})};
+  double x = 0;
+  for (const auto& [length_mm, time_s] : timed) {
+    x += length_mm;
+    blocks.push_back(line_to(blocks.size(), {x, 0.01 * std::sin(9 * x), 0}));
+    blocks.back().feed_meaning = FeedMeaning::kInverseTime;
+    blocks.back().feed = 1 / time_s;
+  }
+  const BandRun run = run_band(blocks);
+  ASSERT_EQ(run.ends.size(), timed.size());
+  expect_smooth_joins(run);
+  double begin = 0;
+  for (std::size_t n = 0; n < timed.size(); ++n) {
+    const double end = run.ends[n].u;
+    double time_s = 0;
+    for (const BandSpan& span : run.spans) {
+      const double from = std::max(begin, span.u0), to = std::min(end, span.u0 + span.length);
+      if (to > from) time_s += (to - from) / span.u_speed_mm_per_s;
+    }
+    EXPECT_GE(time_s, timed[n].time_s * (1 - 1e-9)) << "block " << n + 1;
+    EXPECT_LE(time_s, timed[n].time_s * (1 + 1e-9)) << "block " << n + 1;
+    begin = end;
+  }
 }
 
 TEST(BandStream, TakesPathsShorterThanAnyStep) {

@@ -24,20 +24,6 @@ struct JointSpan {
   BlockMarks marks{};                             ///< blocks that end on the span
 };
 
-/// `span` from x = `from` on, `length` long.
-[[nodiscard]] inline BandSpan part_of_span(const BandSpan& span, double from,
-                                           double length) noexcept {
-  BandSpan out = span;
-  out.u0 = span.u0 + from;
-  out.length = length;
-  for (auto& c : out.c) {  // Taylor shift
-    for (std::size_t round = 0; round < 4; ++round) {
-      for (std::size_t k = 4; k-- > round;) c[k] += from * c[k + 1];
-    }
-  }
-  return out;
-}
-
 /// The piece that the cycle runs on `span`. Joints and names are filled in by the planner.
 [[nodiscard]] inline PathPiece make_spline(const JointSpan& span) noexcept {
   PathPiece piece = make_spline(span.band);
