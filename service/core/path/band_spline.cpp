@@ -21,8 +21,8 @@ constexpr std::int64_t kKnotsAhead = 7;
 /// the ring holds less what the knots look ahead and back.
 constexpr std::int64_t kWindowVertices = kVertexCapacity - 4 * kVertexReach;
 constexpr std::int64_t kMinWindow = 8;
-/// A span is cut where its blocks in inverse time differ so much in speed, into no less than that
-/// share of it.
+/// A span is cut where a block in inverse time is so many times as slow as the one beside it, into
+/// no less than that share of it.
 constexpr double kSpeedJump = 4, kMinPart = 0.02;
 
 std::size_t capacity_for(const BandTuning& tuning) noexcept {
@@ -178,14 +178,14 @@ struct BandSpline::Workspace {
   }
 
   /// Where the span from `emitted_u`, on the segment that ends in vertex `i`, has to end: `to`, or
-  /// ahead of it where a block in inverse time follows one of quite another speed. The faster one
-  /// would take the slower one's. Short blocks have their times together.
+  /// ahead of it where a slow block in inverse time begins or ends: the one beside it would be as
+  /// slow. Short blocks have their times together.
   [[nodiscard]] double find_cut(std::int64_t i, double to, double min_part) const noexcept {
     for (; i < line.last() && line[i].u + min_part < to; ++i) {
       const BandVertex &a = line[i], &b = line[i + 1];
       if (a.is_short_in_time && b.is_short_in_time) continue;
       const auto [slow, fast] = std::minmax(a.u_speed_mm_per_s, b.u_speed_mm_per_s);
-      const bool is_jump = std::isfinite(fast) && fast > kSpeedJump * slow;
+      const bool is_jump = std::isfinite(slow) && fast > kSpeedJump * slow;
       if (is_jump && line[i].u > emitted_u + min_part) return line[i].u;
     }
     return to;

@@ -191,17 +191,18 @@ TEST(BandStream, TakesTheTimesOfTheShortestBlocksInInverseTimeAndNoMore) {
 }
 
 /// Where its span was as slow as the slowest block on it, a block of 0.05 mm in 0.1 s took 20 s.
-TEST(BandStream, CutsASpanWhereAFastBlockInInverseTimeMeetsASlowOne) {
+TEST(BandStream, CutsASpanWhereASlowBlockInInverseTimeBeginsOrEnds) {
   struct Timed {
-    double length_mm, time_s;
+    double length_mm, time_s;  // 0: a block with tip feed
   };
-  const std::vector<Timed> timed = {{5, 0.1},    {0.05, 0.1}, {0.3, 60},
-                                    {0.2, 0.05}, {0.4, 30},   {5, 0.1}};
+  const std::vector<Timed> timed = {{5, 0.1},  {0.05, 0.1}, {0.3, 60}, {0.2, 0.05},
+                                    {0.4, 30}, {0.06, 0},   {0.3, 60}, {5, 0}};
   std::vector<ClBlock> blocks = {line_to(0, {0, 0, 0})};
   double x = 0;
   for (const auto& [length_mm, time_s] : timed) {
     x += length_mm;
     blocks.push_back(line_to(blocks.size(), {x, 0.01 * std::sin(9 * x), 0}));
+    if (time_s == 0) continue;
     blocks.back().feed_meaning = FeedMeaning::kInverseTime;
     blocks.back().feed = 1 / time_s;
   }

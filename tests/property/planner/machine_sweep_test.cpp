@@ -186,11 +186,12 @@ TEST_P(MachineSweep, KeepsEveryPromiseOnEveryShippedMachine) {
   for (std::size_t k = 0; k < models.size(); ++k) sweeps[k].print(models[k].name.c_str());
 }
 
-/// A turn of 0.06 deg in 0.09 s ahead of one of 0.17 deg in 67 s: it took 37 s while a span was as
-/// slow as the slowest block on it.
+/// Turns of 0.06 and 0.2 deg, the one in 0.09 s, the other with tip feed, ahead of turns of 67 and
+/// 100 s: they took 37 and 34 s while a span was as slow as the slowest block on it.
 TEST(MachineSeed, TakesAShortTurnAheadOfASlowOneInItsTime) {
   Sweep sweep;
   run_program(config::load_machine(shipped_file("bench")), 970032, 0, Transition::kSmooth, sweep);
+  run_program(config::load_machine(shipped_file("fork-cb")), 971042, 0, Transition::kSmooth, sweep);
 }
 
 /// Programs that circle fast about the pole just ahead of it: bench comes onto the pole, fork-ca
