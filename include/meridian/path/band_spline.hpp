@@ -93,6 +93,10 @@ class BandSpline {
   /// The ends of blocks on the span that next() returned last, one per call, in order.
   [[nodiscard]] std::optional<BlockEnd> next_block_end() noexcept;
 
+  /// The block that goes on behind that span, once next_block_end() has returned nullopt; `u` is a
+  /// point on it. nullopt: no block does.
+  [[nodiscard]] std::optional<BlockEnd> block_behind() const noexcept;
+
   /// The next corner of the programmed axis, in order and ahead of the spans; nullopt: no more yet.
   /// To be called until then after every push() and next(); corners that were not asked for are
   /// lost.

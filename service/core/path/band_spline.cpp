@@ -265,6 +265,13 @@ std::optional<BlockEnd> BandSpline::next_block_end() noexcept {
   return std::nullopt;
 }
 
+std::optional<BlockEnd> BandSpline::block_behind() const noexcept {
+  const Workspace& w = *workspace_;
+  if (w.block_end > w.line.last()) return std::nullopt;
+  const BandVertex& vertex = w.line[w.block_end];
+  return BlockEnd{vertex.u, vertex.sequence, vertex.line, vertex.block_feed_mm_per_s};
+}
+
 std::optional<AxisMark> BandSpline::next_axis() noexcept {
   Workspace& w = *workspace_;
   w.axis_mark = std::max(w.axis_mark, w.line.first());

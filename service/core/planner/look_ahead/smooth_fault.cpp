@@ -17,15 +17,24 @@ void SmoothRun::fail_on_span() noexcept {
 }
 
 void SmoothRun::name_block_at(std::int64_t number, double x) noexcept {
+  const auto name = [&](std::uint64_t sequence, std::uint32_t line) {
+    faulty_block_.sequence = sequence;
+    faulty_block_.line = line;
+  };
   for (std::int64_t i = number; i < spans_.end_index(); ++i) {
     const JointSpan& span = spans_[i];
     for (std::uint32_t n = 0; n < span.marks.count; ++n) {
       const BlockMark& mark = span.marks.at[n];
       if (i == number && mark.s < x) continue;
-      faulty_block_.sequence = span.band.sequence + mark.ahead;
-      faulty_block_.line = mark.line;
-      return;
+      return name(span.band.sequence + mark.ahead, mark.line);
     }
+  }
+  // A long block: its end lies on no span yet that the feed was given.
+  if (ends_.begin_index() < ends_.end_index()) {
+    const BlockEnd& end = ends_[ends_.begin_index()];
+    name(end.sequence, end.line);
+  } else if (const auto block = band_.block_behind()) {
+    name(block->sequence, block->line);
   }
 }
 

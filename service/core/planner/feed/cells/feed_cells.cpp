@@ -11,13 +11,11 @@
 namespace meridian {
 namespace {
 
-constexpr double kRatio = 2.5;        // of the lengths of neighbouring cells
 constexpr double kLargestJump = 1.0;  // rad between two samples: another branch, no path
 /// Of a joint at the begin: rounding, 1e-10 rad of the redundant joint 8 µrad from the pole, and of
 /// slides that make up for it so much of their way to its axis.
 constexpr double kStep_mm = 1e-7, kStep_rad = 1e-9;
-constexpr double kNoCell_mm = 1e-6;  // of u: an end that is not worth a cell
-constexpr int kHalvings = 16;        // of halving: lengths of a ratio of 60 000
+constexpr int kHalvings = 16;  // of halving: lengths of a ratio of 60 000
 
 /// The range of the samples, and an eighth of it either side for what lies between.
 CellBound bound_of(const std::array<CellSample, FeedCell::kSteps + 1>& at) noexcept {
@@ -124,56 +122,6 @@ PathFault CellGrid::finish() noexcept {
   return make_cells();
 }
 
-void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
-                      std::int64_t smallest) noexcept {
-  const auto begins_before = [&](const FeedCell& cell) {
-    return cell.span < number || (cell.span == number && cell.x < x - kNoCell_mm);
-  };
-  fault_ = {};
-  is_finished_ = is_begin_graded_ = true;
-  drafts_.clear();
-  waiting_count_ = 0;
-  const std::int64_t kept = std::max(first_, smallest);
-  while (last_ > kept && !begins_before((*this)[last_ - 1])) --last_;
-  double begin = 0;  // of the cell that ends at x
-  if (last_ > first_) {
-    const FeedCell& cell = (*this)[last_ - 1];
-    const double end = cell.x + cell.h;
-    if (cell.span == number && end > x + kNoCell_mm) {
-      if (last_ == kept) return;
-      begin = cell.x;
-      --last_;
-    } else if (cell.span == number) {
-      begin = end;
-    } else if (cell.span + 1 != number) {
-      return;
-    }
-  }
-  if (x - begin <= kNoCell_mm) return;
-  // On a sliver of a cell the path would end from all but a rest, and a plan swings back there.
-  if (last_ > kept) {
-    const FeedCell& before = (*this)[last_ - 1];
-    if (before.span == number && x - begin < before.h / kRatio) {
-      begin = before.x;
-      --last_;
-    }
-  }
-  waiting_[0] = make_feed_span(span, tool_length_mm_);
-  waiting_count_ = 1;
-  next_span_ = number;
-  drafts_.push_back({0, begin, x - begin});
-  if (make_cells().kind == PathFault::Kind::kNone) return;
-  fault_ = {};  // it ends a cell earlier
-  drafts_.clear();
-}
-
-bool CellGrid::leaves_reach(const Draft& draft) const noexcept {
-  const FeedSpan& span = waiting_[static_cast<std::size_t>(draft.waiting)];
-  JointVector reference = joints_;
-  CellSample end;
-  return is_fault(sample(span, span.length, reference, end));
-}
-
 PathFault CellGrid::make_cells() noexcept {
   std::size_t used = 0;
   while (used < drafts_.size() && last_ - first_ < settings_.kept_cells) {
@@ -191,6 +139,7 @@ PathFault CellGrid::make_cells() noexcept {
     }
     if (fault_.kind != PathFault::Kind::kNone) {
       faulty_span_ = next_span_ + static_cast<std::uint64_t>(drafts_[used].waiting);
+      narrow_fault(drafts_[used]);
       break;
     }
     ++used;
@@ -203,6 +152,16 @@ PathFault CellGrid::make_cells() noexcept {
   waiting_count_ -= gone;
   next_span_ += static_cast<std::uint64_t>(gone);
   return fault_;
+}
+
+PathFault CellGrid::check_between(const JointDerivatives& a, const JointDerivatives& b,
+                                  double h) const noexcept {
+  PathFault fault = check_turns(model_, a.q, a.d1, b.q, b.d1, h);
+  if (!is_fault(fault)) fault = check_joins(model_, a, b, h);
+  if (has_boxes(model_) && !is_fault(fault)) {
+    fault = check_boxes(model_, tool_length_mm_, a, b, h);
+  }
+  return fault;
 }
 
 PathFault CellGrid::make_cell(const Draft& draft) noexcept {
@@ -230,15 +189,8 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
     if (k > 0) {
       const CellSample& last = cell.at[static_cast<std::size_t>(k - 1)];
       const double step = draft.h / FeedCell::kSteps;
-      const JointDerivatives before_values{values, last.d1, last.d2, last.d3};
-      const JointDerivatives here_values{here, at.d1, at.d2, at.d3};
-      PathFault fault = check_turns(model_, values, last.d1, here, at.d1, step);
-      if (!is_fault(fault)) {
-        fault = check_joins(model_, before_values, here_values, step);
-      }
-      if (has_boxes(model_) && !is_fault(fault)) {
-        fault = check_boxes(model_, tool_length_mm_, before_values, here_values, step);
-      }
+      const PathFault fault =
+          check_between({values, last.d1, last.d2, last.d3}, {here, at.d1, at.d2, at.d3}, step);
       if (is_fault(fault)) return fault;
     }
     values = here;

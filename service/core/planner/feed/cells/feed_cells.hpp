@@ -132,6 +132,7 @@ class CellGrid {
   static constexpr int kMaxPerSpan = 400;
   static constexpr int kWaiting = kMin + kAhead + 4;
   static constexpr int kDrafts = 4096;
+  static constexpr double kRatio = 2.5;  ///< of the lengths of neighbouring cells
 
   /// A cell to be: a piece of a span that waits.
   struct Draft {
@@ -162,6 +163,10 @@ class CellGrid {
   void draft_from_rest(Draft rest, double first, bool is_end, std::size_t to_come,
                        double& from_rest) noexcept;
   [[nodiscard]] PathFault make_cell(const Draft& draft) noexcept;
+  [[nodiscard]] PathFault check_between(const JointDerivatives& a, const JointDerivatives& b,
+                                        double h) const noexcept;
+  /// Finds faulty_x() in `draft` closer than between two of its samples.
+  void narrow_fault(const Draft& draft) noexcept;
   /// Whether the span of `draft` ends out of reach: a joint that jumps on the way there is not why
   /// the block cannot be cut.
   [[nodiscard]] bool leaves_reach(const Draft& draft) const noexcept;
