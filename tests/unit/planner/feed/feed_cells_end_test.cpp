@@ -99,9 +99,62 @@ TEST(CellGrid, EndsAPathBehindTheCellsThatAreThere) {
   first.grid.drop_before(10);
   first.grid.end_at(first.second, 1, 0.7, 0);
   first.expect_end(51, 0, 0.7);
+}
+
+TEST(CellGrid, MakesCellsOfWhatWasPushedBeforeItsEnd) {
+  Ended one(64);
+  one.grid.end_at(one.second, 1, 40.6, 0);
+  EXPECT_FALSE(one.grid.is_complete()) << "there was no room yet";
+  one.grid.drop_before(60);
+  EXPECT_FALSE(is_fault(one.grid.make_cells()));
+  one.expect_end(91, 40, 0.6);
+  Ended sliver(64);
+  sliver.grid.end_at(sliver.second, 1, 40.3, 0);
+  sliver.grid.drop_before(60);
+  EXPECT_FALSE(is_fault(sliver.grid.make_cells()));
+  sliver.expect_end(90, 39, 1.3);
   Ended far(64);
   far.grid.end_at(straight(100, 50), 5, 10, 0);
-  far.expect_end(64, 13, 1);
+  far.grid.drop_before(60);
+  EXPECT_FALSE(is_fault(far.grid.make_cells()));
+  far.expect_end(100, 49, 1);
+}
+
+/// No cells of it yet: a path is as long as it takes for spans to become cells.
+TEST(CellGrid, MakesAllCellsOfAPathThatEndsBeforeItHasAny) {
+  StraightGrid g;
+  const ToolPose from = pose_on(straight(0, 50).band.c, 0.0);
+  g.grid.begin(solve(g.model, g.model.tool_length_mm, from, 0, {}).q, g.model.tool_length_mm);
+  for (const double x : {0.0, 10.0, 20.0}) ASSERT_FALSE(is_fault(g.grid.push(straight(x, 10))));
+  ASSERT_EQ(g.grid.last(), 0);
+  g.grid.end_at(straight(10, 10), 1, 7, 0);
+  EXPECT_FALSE(is_fault(g.grid.fault()));
+  EXPECT_TRUE(g.grid.is_complete());
+  ASSERT_GE(g.grid.last(), CellGrid::kMin);
+  double length = 0;
+  for (std::int64_t n = 0; n < g.grid.last(); ++n) length += g.grid[n].h;
+  EXPECT_NEAR(length, 17, 1e-9);
+  EXPECT_EQ(g.grid[g.grid.last() - 1].span, 1U);
+}
+
+/// What was not looked at yet may have a fault of its own, ahead of the one that is known.
+TEST(CellGrid, SaysWhatFaultLiesAheadOfItsEnd) {
+  MachineModel model = bench_machine();
+  model.joints[0].limits.travel_max = Ended(64).grid.joints()[0] + 0.3;
+  const double beyond = 14 + 0.3 / Ended().grid[5].at[0].d1[0];  // x, on the second span
+  StraightGrid g(model);
+  const ToolPose from = pose_on(straight(0, 50).band.c, 0.0);
+  g.grid.begin(solve(model, model.tool_length_mm, from, 0, {}).q, model.tool_length_mm);
+  for (const double x : {0.0, 50.0}) ASSERT_FALSE(is_fault(g.grid.push(straight(x, 50))));
+  g.grid.end_at(straight(50, 50), 1, 30, 0);
+  EXPECT_EQ(g.grid.fault().kind, PathFault::Kind::kTravel);
+  EXPECT_EQ(g.grid.faulty_span(), 1U);
+  EXPECT_NEAR(g.grid.faulty_x(), beyond, 1e-4);
+  g.grid.end_at(straight(50, 50), 1, 12, 0);
+  EXPECT_FALSE(is_fault(g.grid.fault()));
+  EXPECT_TRUE(g.grid.is_complete());
+  const FeedCell& last = g.grid[g.grid.last() - 1];
+  EXPECT_NEAR(last.x + last.h, 12, 1e-9);
 }
 
 TEST(CellGrid, EndsAPathACellEarlierWhereItsLastOneWouldLeaveTravel) {

@@ -5,6 +5,8 @@
 #include <cstdint>
 
 #include "meridian/kinematics/kinematics.hpp"
+#include "meridian/path/pose_at.hpp"
+#include "meridian/planner/time_law.hpp"
 #include "unit/planner/look_ahead/ran_blocks.hpp"
 
 /// Where a smooth run ends that cannot go on: it names the block, and rests ahead of it.
@@ -15,6 +17,8 @@ using ran_blocks::kBegin;
 using ran_blocks::Ran;
 using ran_blocks::Status;
 
+constexpr double kTip_mm = 0.01;  // tolerance of the tip
+
 /// The machine whose first joint may not pass where it is at `pose`.
 MachineModel machine_that_ends_at(const ToolPose& pose) {
   MachineModel model = bench_machine();
@@ -22,33 +26,57 @@ MachineModel machine_that_ends_at(const ToolPose& pose) {
   return model;
 }
 
-TEST(SmoothFault, EndsAheadOfABlockThatLeavesTravelAndNamesIt) {
-  MachineModel model = bench_machine();
-  const JointVector begin = solve(model, model.tool_length_mm, kBegin, 0, {}).q;
-  ToolPose at = kBegin;
-  at.tip[0] += 51;  // on the 26th block
-  const JointVector end = solve(model, model.tool_length_mm, at, 0, {}).q;
+/// The slide that moves farthest from `from` to `at` may go no farther; which one.
+int end_travel_at(const ToolPose& at, const ToolPose& from, MachineModel& model) {
+  const JointVector begin = solve(model, model.tool_length_mm, from, 0, {}).q;
+  const JointVector end = solve(model, model.tool_length_mm, at, 0, begin).q;
   int joint = 0;
   for (int i = 1; i < 3; ++i) {
     if (std::abs(end[i] - begin[i]) > std::abs(end[joint] - begin[joint])) joint = i;
   }
   JointLimits& limits = model.joints[joint].limits;
   (end[joint] > begin[joint] ? limits.travel_max : limits.travel_min) = end[joint];
+  return joint;
+}
+
+/// Runs what is published, and what is planned yet, to the rest that the run ends in: the tip
+/// there.
+Vector3 run_out(Ran& one) {
+  constexpr int kMaxPieces = 20000;
+  one.reader.set_epoch(one.start.epoch);
+  TimePiece last;
+  PathPiece path;
+  for (int n = 0; n < kMaxPieces; ++n) {
+    one.status = one.run.publish(one.writer);
+    const TimePiece* piece = one.reader.advance();
+    if (piece != nullptr) {
+      last = *piece;
+      path = *one.reader.path();
+    } else if (one.status == Status::kFailed) {
+      break;
+    }
+  }
+  EXPECT_EQ(one.status, Status::kFailed);
+  EXPECT_FALSE(last.is_tail);
+  const PathState rest = state_at(last, last.duration);
+  EXPECT_NEAR(rest.ds, 0, 1e-6);
+  return pose_at(path, rest.s).tip;
+}
+
+TEST(SmoothFault, EndsAheadOfABlockThatLeavesTravelAndNamesIt) {
+  MachineModel model = bench_machine();
+  ToolPose at = kBegin;
+  at.tip[0] += 51;  // on the 26th block
+  const int joint = end_travel_at(at, kBegin, model);
   Ran one(model);
   for (int n = 0; n < 150 && !one.run.has_fault(); ++n) one.cut_straight(1, 2);
   ASSERT_TRUE(one.run.has_fault());
-  one.reader.set_epoch(3);
-  for (int n = 0; n < 5000 && one.run.publish(one.writer) != Status::kFailed; ++n) {
-    (void)one.reader.advance();
-  }
-  EXPECT_EQ(one.run.publish(one.writer), Status::kFailed);
+  const Vector3 rest = run_out(one);
   EXPECT_EQ(one.run.fault().kind, PathFault::Kind::kTravel);
   EXPECT_EQ(one.run.faulty_block().joint, joint);
   EXPECT_EQ(one.run.faulty_block().sequence, 40U + 25);
   EXPECT_EQ(one.run.faulty_block().line, 140U + 25);
-  const ToolPose rest = forward(model, model.tool_length_mm, one.run.joints());
-  EXPECT_GT((rest.tip - kBegin.tip)[0], 49.9) << "where the block before ends, or behind it";
-  EXPECT_LT((rest.tip - kBegin.tip)[0], 51);
+  EXPECT_NEAR((rest - kBegin.tip)[0], 50, kTip_mm) << "where the block before ends";
 }
 
 TEST(SmoothFault, NamesTheBlockThatLeavesTravelAmongShortOnes) {
@@ -81,6 +109,10 @@ TEST(SmoothFault, NamesTheBlockThatLeavesTravelAmongLongOnes) {
         EXPECT_EQ(one.run.faulty_block().sequence, static_cast<std::uint64_t>(40 + wanted))
             << length << " mm, at " << share;
         EXPECT_EQ(one.run.faulty_block().line, static_cast<std::uint32_t>(140 + wanted));
+        // At the end of the block before, or where the rest of what was published lies farther.
+        const double rest = (run_out(one) - kBegin.tip)[0];
+        EXPECT_GT(rest, length * wanted - kTip_mm);
+        EXPECT_LE(rest, length * (wanted + share));
       }
     }
   }
@@ -104,39 +136,63 @@ TEST(SmoothFault, NamesTheBlockThatLeavesTravelWithinAMicrometreOfItsEnd) {
   }
 }
 
-/// Through the pole, where C may not turn by a half and the tilt may not turn over.
-TEST(SmoothFault, WhereNoRouteLeadsPastThePoleItNamesTheBlockThereAndRestsAhead) {
-  const auto at = [](double x) {
-    return ToolPose{Vector3(x, 0, 0), Vector3(0, 0.004 * x, 1).normalized()};
-  };
+/// The axis at `x` of a path through the pole.
+ToolPose pole_pose(double x) { return {Vector3(x, 0, 0), Vector3(0, 0.004 * x, 1).normalized()}; }
+
+/// C may not turn by a half and the tilt may not turn over: nothing passes the pole.
+MachineModel machine_without_pass() {
   MachineModel model = bench_machine();
-  const auto free = static_cast<std::size_t>(redundant_joint(model));
+  const int free = redundant_joint(model);
   model.joints[free].is_endless = false;
   model.joints[free].limits.travel_min = -2;
   model.joints[free].limits.travel_max = 0.5;
-  JointLimits& tilt = model.joints[free == 4 ? 3 : 4].limits;
-  tilt.travel_min = 0;
-  Ran one(model, at(-60));
-  one.reader.set_epoch(3);
-  for (int n = 1; n <= 120 && !one.run.has_fault(); ++n) {
-    one.cut(at(-60 + 2 * n));
-    while (one.status == Status::kNoRoom && one.reader.advance() != nullptr) {
-      one.status = one.run.publish(one.writer);
+  model.joints[free == 4 ? 3 : 4].limits.travel_min = 0;
+  return model;
+}
+
+/// Blocks of 2 mm through the pole, until a fault is known.
+struct RanThroughPole : Ran {
+  explicit RanThroughPole(const MachineModel& m) : Ran(m, pole_pose(kFrom_mm)) {
+    reader.set_epoch(start.epoch);
+    for (int n = 1; n <= 120 && !run.has_fault(); ++n) {
+      cut(pole_pose(kFrom_mm + kLength_mm * n));
+      while (status == Status::kNoRoom && reader.advance() != nullptr) {
+        status = run.publish(writer);
+      }
     }
   }
+  /// x where the block before the faulty one ends.
+  [[nodiscard]] double last_good_end() const {
+    return kFrom_mm + kLength_mm * (static_cast<double>(run.faulty_block().sequence) - 40);
+  }
+
+  static constexpr double kFrom_mm = -60, kLength_mm = 2;
+};
+
+TEST(SmoothFault, WhereNoRouteLeadsPastThePoleItNamesTheBlockThereAndRestsAhead) {
+  const MachineModel model = machine_without_pass();
+  RanThroughPole one(model);
   ASSERT_TRUE(one.run.has_fault());
   EXPECT_EQ(one.run.fault().kind, PathFault::Kind::kBranch);
-  EXPECT_EQ(one.run.faulty_block().joint, static_cast<int>(free));
+  EXPECT_EQ(one.run.faulty_block().joint, redundant_joint(model));
   // Spans are held back from where a pass may begin.
-  const double end = -58 + 2 * (static_cast<double>(one.run.faulty_block().sequence) - 40);
-  EXPECT_GE(end, -kPoleReach_mm);
-  EXPECT_LT(end, -kPoleReach_mm + 4);
+  EXPECT_GE(one.last_good_end(), -kPoleReach_mm - 2);
+  EXPECT_LT(one.last_good_end(), -kPoleReach_mm + 2);
   EXPECT_EQ(one.run.faulty_block().line, one.run.faulty_block().sequence + 100);
-  for (int n = 0; n < 5000 && one.run.publish(one.writer) != Status::kFailed; ++n) {
-    (void)one.reader.advance();
-  }
-  EXPECT_EQ(one.run.publish(one.writer), Status::kFailed);
-  EXPECT_LT(forward(model, model.tool_length_mm, one.run.joints()).tip[0], 0);
+  EXPECT_NEAR(run_out(one)[0], one.last_good_end(), kTip_mm);
+}
+
+/// On spans that are no cells yet where it is found that nothing passes the pole.
+TEST(SmoothFault, NamesATravelFaultAheadOfThePoleFirst) {
+  MachineModel model = machine_without_pass();
+  const int joint = end_travel_at(pole_pose(-23.5), pole_pose(RanThroughPole::kFrom_mm), model);
+  RanThroughPole one(model);
+  ASSERT_TRUE(one.run.has_fault());
+  EXPECT_EQ(one.run.fault().kind, PathFault::Kind::kTravel);
+  EXPECT_EQ(one.run.faulty_block().joint, joint);
+  EXPECT_EQ(one.last_good_end(), -24);
+  EXPECT_NEAR(run_out(one)[0], -24, kTip_mm);
+  EXPECT_EQ(one.run.fault().kind, PathFault::Kind::kTravel);
 }
 
 }  // namespace

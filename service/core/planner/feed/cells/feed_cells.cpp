@@ -114,12 +114,15 @@ PathFault CellGrid::push(const FeedSpan& span) noexcept {
 PathFault CellGrid::finish() noexcept {
   if (fault_.kind != PathFault::Kind::kNone) return fault_;
   is_finished_ = true;
-  // A short path: cells enough for a motion to be shaped.
+  halve_short_path();
+  grade_end();
+  return make_cells();
+}
+
+void CellGrid::halve_short_path() noexcept {
   while (last_ == 0 && !drafts_.empty() && drafts_.size() < kMin) {
     halve(std::numeric_limits<double>::infinity(), 0, 1);
   }
-  grade_end();
-  return make_cells();
 }
 
 PathFault CellGrid::make_cells() noexcept {

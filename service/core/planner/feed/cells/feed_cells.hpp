@@ -81,7 +81,8 @@ class CellGrid {
   [[nodiscard]] PathFault finish() noexcept;
 
   /// Behind a fault, or where it is not waited for more: the path ends at `x` of `span`, the
-  /// `number`th, whose cell there is shortened. Cells before `least` stand.
+  /// `number`th, whose cell there is shortened. What was pushed and lies before it becomes cells
+  /// yet; fault() says where it cannot. Cells before `smallest` stand.
   void end_at(const JointSpan& span, std::uint64_t number, double x,
               std::int64_t smallest) noexcept;
 
@@ -155,6 +156,14 @@ class CellGrid {
   /// Halves cells longer than `ratio` times a neighbour; `left` is the one before the first.
   void halve(double left, double ratio, int rounds) noexcept;
   [[nodiscard]] bool split(std::size_t draft) noexcept;
+  /// Of a path without cells: drafts enough for a motion to be shaped.
+  void halve_short_path() noexcept;
+  /// Forgets what was to become cells behind `x` of the `number`th span.
+  void cut_drafts(std::uint64_t number, double x) noexcept;
+  /// Forgets the cells behind it, but for the first `kept`: the one there is to be made anew.
+  void cut_cells(const JointSpan& span, std::uint64_t number, double x, std::int64_t kept) noexcept;
+  /// On a sliver of a cell the path would end from all but a rest, and a plan swings back there.
+  void join_sliver(std::int64_t kept) noexcept;
   /// Cells of the path beside the rests at both of its ends, graded by the distance to them.
   void grade_begin() noexcept;
   void grade_end() noexcept;

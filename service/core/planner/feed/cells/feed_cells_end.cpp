@@ -52,45 +52,68 @@ void CellGrid::narrow_fault(const Draft& draft) noexcept {
   }
 }
 
-void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
-                      std::int64_t smallest) noexcept {
+void CellGrid::cut_drafts(std::uint64_t number, double x) noexcept {
+  const auto number_of = [&](const Draft& draft) {
+    return next_span_ + static_cast<std::uint64_t>(draft.waiting);
+  };
+  const auto is_beyond = [&](const Draft& draft) {
+    return number_of(draft) > number || (number_of(draft) == number && draft.x >= x - kNoCell_mm);
+  };
+  while (!drafts_.empty() && is_beyond(drafts_.back())) drafts_.pop_back();
+  if (drafts_.empty()) return;
+  Draft& last = drafts_.back();
+  if (number_of(last) == number) last.h = std::min(last.h, x - last.x);
+}
+
+void CellGrid::cut_cells(const JointSpan& span, std::uint64_t number, double x,
+                         std::int64_t kept) noexcept {
   const auto begins_before = [&](const FeedCell& cell) {
     return cell.span < number || (cell.span == number && cell.x < x - kNoCell_mm);
   };
-  fault_ = {};
-  is_finished_ = is_begin_graded_ = true;
-  drafts_.clear();
   waiting_count_ = 0;
-  const std::int64_t kept = std::max(first_, smallest);
   while (last_ > kept && !begins_before((*this)[last_ - 1])) --last_;
-  double begin = 0;  // of the cell that ends at x
-  if (last_ > first_) {
-    const FeedCell& cell = (*this)[last_ - 1];
-    const double end = cell.x + cell.h;
-    if (cell.span == number && end > x + kNoCell_mm) {
-      if (last_ == kept) return;
-      begin = cell.x;
-      --last_;
-    } else if (cell.span == number) {
-      begin = end;
-    } else if (cell.span + 1 != number) {
-      return;
-    }
-  }
-  if (x - begin <= kNoCell_mm) return;
-  // On a sliver of a cell the path would end from all but a rest, and a plan swings back there.
-  if (last_ > kept) {
-    const FeedCell& before = (*this)[last_ - 1];
-    if (before.span == number && x - begin < before.h / kRatio) {
-      begin = before.x;
-      --last_;
-    }
-  }
+  if (last_ == kept) return;
+  const FeedCell& cell = (*this)[last_ - 1];
+  if (cell.span != number || cell.x + cell.h <= x + kNoCell_mm) return;
   waiting_[0] = make_feed_span(span, tool_length_mm_);
   waiting_count_ = 1;
   next_span_ = number;
-  drafts_.push_back({0, begin, x - begin});
-  if (make_cells().kind == PathFault::Kind::kNone) return;
+  drafts_.push_back({0, cell.x, x - cell.x});
+  --last_;
+}
+
+void CellGrid::join_sliver(std::int64_t kept) noexcept {
+  const std::size_t count = drafts_.size();
+  Draft& last = drafts_.back();
+  if (count > 1) {
+    Draft& before = drafts_[count - 2];
+    if (before.waiting != last.waiting || last.h >= before.h / kRatio) return;
+    before.h += last.h;
+    drafts_.pop_back();
+  } else if (last_ > kept) {
+    const FeedCell& before = (*this)[last_ - 1];
+    const std::uint64_t number = next_span_ + static_cast<std::uint64_t>(last.waiting);
+    if (before.span != number || last.h >= before.h / kRatio) return;
+    last.h += last.x - before.x;
+    last.x = before.x;
+    --last_;
+  }
+}
+
+void CellGrid::end_at(const JointSpan& span, std::uint64_t number, double x,
+                      std::int64_t smallest) noexcept {
+  fault_ = {};
+  is_finished_ = true;
+  const std::int64_t kept = std::max(first_, smallest);
+  cut_drafts(number, x);
+  if (drafts_.empty()) cut_cells(span, number, x, kept);
+  if (drafts_.empty()) return;
+  join_sliver(kept);
+  halve_short_path();
+  const Draft last = drafts_.back();
+  const std::uint64_t end_span = next_span_ + static_cast<std::uint64_t>(last.waiting);
+  if (!is_fault(make_cells())) return;
+  if (faulty_span_ < end_span || drafts_.front().x < last.x) return;
   fault_ = {};  // it ends a cell earlier
   drafts_.clear();
 }
