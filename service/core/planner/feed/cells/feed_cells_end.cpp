@@ -24,7 +24,7 @@ void CellGrid::narrow_fault(const Draft& draft) noexcept {
   const FeedSpan& span = waiting_[static_cast<std::size_t>(draft.waiting)];
   if (!(faulty_x_ > draft.x)) return;  // it begins with the fault
   double good = std::max(draft.x, faulty_x_ - draft.h / FeedCell::kSteps);
-  struct Place {
+  struct JointSample {
     JointVector joints;
     LimitedVector values;
     CellSample at;
@@ -32,13 +32,13 @@ void CellGrid::narrow_fault(const Draft& draft) noexcept {
       return {values, at.d1, at.d2, at.d3};
     }
   };
-  const auto is_good = [&](double x, const JointVector& reference, Place& out) {
+  const auto is_good = [&](double x, const JointVector& reference, JointSample& out) {
     out.joints = reference;
     if (is_fault(sample(span, x, out.joints, out.at))) return false;
     out.values = limited_of(model_, out.joints);
     return first_joint_outside_travel(model_, out.joints, kTravelMargin) < 0;
   };
-  Place last, middle;
+  JointSample last, middle;
   if (!is_good(good, joints_, last)) return;
   for (int n = 0; n < kFaultHalvings; ++n) {
     const double step = 0.5 * (faulty_x_ - good);

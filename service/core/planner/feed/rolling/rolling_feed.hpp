@@ -83,8 +83,8 @@ class RollingFeed {
   [[nodiscard]] PathFault finish() noexcept { return grid_.finish(); }
 
   /// Behind a fault: the path ends at `x` of `span`, the `number`th, at rest; or behind what was
-  /// planned, and behind `smallest` cells, where that is farther. fault() says where a span ahead of it
-  /// that was no cell yet has a fault of its own.
+  /// planned, and behind `smallest` cells, where that is farther. A span ahead of it that was no
+  /// cell yet may have a fault of its own: fault() says so.
   void end_at(const JointSpan& span, std::uint64_t number, double x,
               std::int64_t smallest) noexcept {
     grid_.end_at(span, number, x, std::max(smallest, is_at_rest_ ? next_ : old_.end));
