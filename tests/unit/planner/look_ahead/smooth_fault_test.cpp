@@ -63,6 +63,28 @@ Vector3 run_out(Ran& one) {
   return pose_at(path, rest.s).tip;
 }
 
+/// Not even as far as the travel reaches.
+TEST(SmoothFault, MovesNothingWhereItsFirstBlockLeavesTravel) {
+  for (const double inside_mm : {0.02, 3.0}) {
+    SCOPED_TRACE(testing::Message() << inside_mm << " mm inside");
+    MachineModel model = bench_machine();
+    ToolPose at = kBegin;
+    at.tip[0] += inside_mm;
+    end_travel_at(at, kBegin, model);
+    Ran one(model);
+    for (int n = 0; n < 8 && !one.run.has_fault(); ++n) one.cut_straight(1, 50);
+    if (!one.run.has_fault()) one.finish();
+    ASSERT_TRUE(one.run.has_fault());
+    EXPECT_EQ(one.run.faulty_block().sequence, 40U);
+    one.reader.set_epoch(one.start.epoch);
+    for (int n = 0; n < 50; ++n) {
+      one.status = one.run.publish(one.writer);
+      EXPECT_EQ(one.reader.advance(), nullptr) << "a piece of motion";
+    }
+    EXPECT_EQ(one.status, Status::kFailed);
+  }
+}
+
 TEST(SmoothFault, EndsAheadOfABlockThatLeavesTravelAndNamesIt) {
   MachineModel model = bench_machine();
   ToolPose at = kBegin;
