@@ -194,6 +194,14 @@ TEST(MachineSeed, TakesAShortTurnAheadOfASlowOneInItsTime) {
   run_program(config::load_machine(shipped_file("fork-cb")), 971042, 0, Transition::kSmooth, sweep);
 }
 
+/// Two corners of the axis 0.08 mm apart, on a stretch of 61 mm: the second was off by 1.006
+/// tolerances where the sharpest of every 0.24 mm alone was checked.
+TEST(MachineSeed, KeepsTheToleranceAtEveryCornerOfTheAxisBesideThePole) {
+  Sweep sweep;
+  run_program(config::load_machine(shipped_file("head-table-bc")), 972063, 1, Transition::kSmooth,
+              sweep);
+}
+
 /// Programs that circle fast about the pole just ahead of it: bench comes onto the pole, fork-ca
 /// begins there.
 TEST(MachineSeed, RunsThroughThePoleBehindFastCircles) {

@@ -121,6 +121,22 @@ TEST(ProgrammedAxis, FindsTheSharpestChangeOfDirectionOfEveryPart) {
       << "the last end is no kink: nothing is known behind it";
 }
 
+TEST(ProgrammedAxis, FindsEveryChangeOfDirectionWhereThereIsRoomHoweverCloseTheyLie) {
+  ProgrammedAxis axis;
+  axis.begin(leaning(0));
+  axis.add(10, leaning(0.1));
+  axis.add(10.08, leaning(0.1));
+  axis.add(10.16, leaning(0.101));
+  axis.add(90, leaning(0));
+  axis.add(100, leaning(0));
+  std::array<double, 4> kinks{};
+  ASSERT_EQ(axis.find_kinks(0, 95, kinks), 4U);
+  EXPECT_EQ(kinks, (std::array{10.0, 10.08, 10.16, 90.0}));
+  std::array<double, 3> few{};
+  ASSERT_EQ(axis.find_kinks(0, 95, few), 2U) << "the sharpest of every third of the range";
+  EXPECT_EQ(few[1], 90);
+}
+
 TEST(ProgrammedAxis, CountsPartsFromTheBeginOfTheRangeToItsEnd) {
   ProgrammedAxis axis;
   axis.begin(leaning(0));

@@ -77,6 +77,17 @@ double ProgrammedAxis::kink_at(std::int64_t n) const noexcept {
 
 std::size_t ProgrammedAxis::find_kinks(double begin, double end,
                                        std::span<double> kinks) const noexcept {
+  std::size_t found = 0;
+  for (std::int64_t n = mark_before(begin) + 1; n + 1 < last_ && mark(n).u < end; ++n) {
+    if (!(kink_at(n) > kMinKink_per_mm)) continue;
+    if (found == kinks.size()) return find_sharpest(begin, end, kinks);
+    kinks[found++] = mark(n).u;
+  }
+  return found;
+}
+
+std::size_t ProgrammedAxis::find_sharpest(double begin, double end,
+                                          std::span<double> kinks) const noexcept {
   const double parts = static_cast<double>(kinks.size()) / (end - begin);
   const double last_part = static_cast<double>(kinks.size()) - 1;  // rounding may find one more
   std::size_t count = 0;

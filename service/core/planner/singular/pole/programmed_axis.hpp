@@ -43,8 +43,8 @@ class ProgrammedAxis {
   /// Where the next block behind `u` ends; infinite where none is known.
   [[nodiscard]] double next_end(double u) const noexcept;
 
-  /// Where between `begin` and `end` its direction changes at once, ascending: of every part of
-  /// the way, as many as `kinks` has room for, the sharpest. Returns how many.
+  /// Where between `begin` and `end` its direction changes at once, ascending. Where `kinks` has no
+  /// room for all: of as many parts of the path the sharpest each. Returns how many.
   std::size_t find_kinks(double begin, double end, std::span<double> kinks) const noexcept;
 
  private:
@@ -53,6 +53,7 @@ class ProgrammedAxis {
     Array3 axis{};
     double hidden_rad = 0;  ///< between the mark before and this one
   };
+  std::size_t find_sharpest(double begin, double end, std::span<double> kinks) const noexcept;
   [[nodiscard]] const Mark& mark(std::int64_t n) const noexcept {
     return marks_[static_cast<std::size_t>(n % kCapacity)];
   }
