@@ -7,10 +7,9 @@
 ///
 ///     s̈ = s'' w² + s' w',   s⃛ = s''' w³ + 3 s'' w w' + s' w''
 ///
-/// so a plan with |s''| + kRateSlope |s'| <= A and |s'''| + 3 kRateSlope |s''| + kRateCurvature
-/// |s'|
-/// <= J stays inside A and J at every override. Less is enough, as |w'| is small where w is near 1:
-/// rate_room.hpp. Planner and cycle share these numbers (docs/motion.md).
+/// so a plan with |s''| + kRateSlope |s'| <= A and |s'''| + 3 kRateSlope |s''| +
+/// kRateCurvature |s'| <= J stays inside A and J at every override. Less is enough, as |w'| is
+/// small where w is near 1: rate_room.hpp. Planner and cycle share these numbers (docs/motion.md).
 namespace meridian {
 
 inline constexpr double kRateSlope_per_s = 1.0;
