@@ -113,5 +113,31 @@ TEST(VerticalTool, IsLedOntoThePoleFromCirclesAboutIt) {
   std::printf("%.6f of the limits\n", largest);
 }
 
+/// A vertical tool by the numbers of a CAM system, some seconds of arc off the pole: the cut that
+/// leads off from it passed the pole on its own azimuth, C by 176 deg in 4.1 s.
+TEST(VerticalTool, LeadsOffFromBesideThePoleNoSlowerThanInExactStop) {
+  const MachineModel model = config::load_machine(shipped_file("trunnion-bc"));
+  for (const double lean : {1e-6, 2e-5, 1e-4, 2e-4, 3e-4}) {
+    for (const double azimuth : {1.0, 2.5, 4.0}) {
+      SCOPED_TRACE(std::to_string(lean) + " at " + std::to_string(azimuth));
+      const double tilt = units::rad_from_deg(25);
+      const Vector3 vertical = Vector3(lean * std::cos(azimuth), lean * std::sin(azimuth), 1);
+      const Vector3 tilted(0.6 * std::sin(tilt), 0.8 * std::sin(tilt), std::cos(tilt));
+      std::vector<ClBlock> blocks = {cut_block(0, {Vector3(0, 0, 30), vertical.normalized()}),
+                                     cut_block(1, {Vector3(20, 0, 30), vertical.normalized()}),
+                                     cut_block(2, {Vector3(40, 0, 30), tilted})};
+      for (ClBlock& block : blocks) block.feed = 40;
+      end_program(blocks);
+      const auto seconds = [&](Transition how) {
+        const SmoothTrace trace =
+            plan_smooth(model, blocks, joints_of(model, blocks[0]), {how, 0, 0});
+        EXPECT_EQ(trace.last.status, PlanStatus::kOk);
+        return trace.duration_s();
+      };
+      EXPECT_LE(seconds(Transition::kSmooth), seconds(Transition::kExactStop) + 0.005);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace meridian::test

@@ -64,7 +64,8 @@ class Router {
   void set_pole_tolerance(double rad) noexcept { on_pole_rad_ = rad; }
 
   /// Nearer to the pole than `rad` the redundant joint may be turned at rest, the axis inside that
-  /// of where it was programmed.
+  /// of where it was programmed; a block that leads off from there, but one in inverse time, may
+  /// pass the pole so near where that is faster.
   void set_free_cone(double rad) noexcept { free_cone_rad_ = rad; }
 
   /// Lifts the tool off where the machine rests, along its axis by the clearance as far as travel
@@ -210,6 +211,19 @@ class Router {
                                      PlanCursor& cursor, Staging& out) noexcept;
   [[nodiscard]] PathFault pass_pole(const PathPiece& path, const ToolPose& end, double share,
                                     const Job& job, PlanCursor& cursor, Staging& out) noexcept;
+  /// `path` runs between two axes off the pole, as near to it as it may be.
+  [[nodiscard]] PathFault route_past_pole(const PathPiece& path, const ToolPose& end,
+                                          const Job& job, PlanCursor& cursor,
+                                          Staging& out) noexcept;
+  /// Where a route began.
+  struct Begin {
+    const PlanCursor& cursor;
+    Staging::Mark mark;
+  };
+  /// `path` begins in the free cone, is nearest to the pole at `share`, and was staged from `begin`
+  /// on: stages in place of it the passage of the pole, where that is faster.
+  void pass_in_cone(const PathPiece& path, const ToolPose& end, double share, Job job,
+                    const Begin& begin, PlanCursor& cursor, Staging& out) noexcept;
   /// `path` begins beside the pole, and the redundant joint runs out of travel on the branch in
   /// force: turn it at rest to another branch or winding, then go. `fault`: of the branch in force.
   [[nodiscard]] PathFault leave_otherwise(const PathPiece& path, const ToolPose& end,

@@ -33,6 +33,13 @@ struct Staging {
     time_count = mark.times;
   }
 
+  /// How long what was added since takes, s.
+  [[nodiscard]] double duration_since(const Mark& mark) const noexcept {
+    double sum = 0;
+    for (int n = mark.times; n < time_count; ++n) sum += times[n].duration;
+    return sum;
+  }
+
   /// Adds a path piece, which gets the next index.
   [[nodiscard]] bool add(const PathPiece& piece) noexcept {
     if (path_count == static_cast<int>(paths.size())) return false;
