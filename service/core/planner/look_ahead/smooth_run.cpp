@@ -328,14 +328,16 @@ bool SmoothRun::write(MotionWriter& writer) noexcept {
 }
 
 /// On the pole the redundant joint is held where it came from: it is followed there, as the cycle
-/// does, which rests where the last of its places led.
+/// does, which rests where the last of its places led. A span that leaves reach ahead of its end,
+/// where a run that is refused rests, has the last joints that there are.
 JointVector SmoothRun::joints_at_end(const PathPiece& piece) const noexcept {
   JointVector joints = piece.joints_begin;
   for (double left = 0.1; left > 1e-7; left *= 0.1) {
     const auto near_end = joints_at(model_, piece, (1 - left) * piece.length, joints);
     if (near_end.status != SolveStatus::kUnreachable) joints = near_end.q;
   }
-  return joints_at(model_, piece, piece.length, joints).q;
+  const auto end = joints_at(model_, piece, piece.length, joints);
+  return end.status == SolveStatus::kUnreachable ? joints : end.q;
 }
 
 bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept {
