@@ -127,10 +127,10 @@ TEST(FamilyCorpusReach, IsExactlyTheInterval) {
     SCOPED_TRACE(row);
     const GoldenChain machine = chain_of(table.word(row, "machine"));
     const Vector3 axis(table.number(row, "Kx"), table.number(row, "Ky"), table.number(row, "Kz"));
-    EXPECT_EQ(
-        chain::triangle(machine.chain, chain::in_frame_a(machine.chain, Vector3(axis.normalized())))
-            .is_reachable,
-        table.number(row, "n") > 0);
+    const auto half =
+        chain::half_angle<double>(chain::in_frame_a(machine.chain, Vector3(axis.normalized())));
+    EXPECT_EQ(chain::triangle(half, chain::cone_of(machine.chain)).is_reachable,
+              table.number(row, "n") > 0);
     const auto reach = chain::reach(machine.chain);
     EXPECT_NEAR(reach.min_rad, table.number(row, "lo"), 1e-14);
     EXPECT_NEAR(reach.largest_rad, table.number(row, "hi"), 1e-14);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 #include "meridian/expected.hpp"
 #include "meridian/geometry/jet.hpp"
@@ -48,7 +49,8 @@ struct ChainKinematics {
   };
   Rotary a, b;
   std::array<Linear, 3> linear;
-  int group = -1;  ///< of all three linear joints; -1: rotary joints stand between them
+  int group = -1;             ///< of all three linear joints; -1: rotary joints stand between them
+  bool slides_align = false;  ///< the rotary joints can turn the linear ones into one plane
 
   /// Frame of joint a: z along a, b in the half plane of z and +x; rows are its directions. The
   /// frame of joint b is this one turned about y, so that z runs along b.
@@ -67,6 +69,10 @@ struct ChainKinematics {
   double p_sin = 0, p_cos = 1;     ///< p = (angle(b, k0) + angle(a, b)) / 2
   bool has_pole = false;           ///< K = a leaves joint a free
   bool has_opposite_pole = false;  ///< so does K = -a
+  /// By so much the tool axis misses a where it comes nearest to it, χ - ψ: of a machine that was
+  /// measured, and has a pole all the same. 0: they meet. Eq. 4.12.
+  double pole_offset_rad = 0;
+  Vector3 outwards = Vector3::UnitX();  ///< unit, across k0, away from b
 };
 
 /// Returns the chain with its constants worked out, or the reason why it cannot work: the five
@@ -83,6 +89,12 @@ namespace chain {
 
 /// How far a half-angle sine may fall below zero by rounding before the axis is out of reach.
 inline constexpr double kReachMargin_rad = 1e-12;
+
+/// A tool axis that misses rotary joint a by no more than this is meant to meet it.
+inline constexpr double kMaxPoleOffset_rad = 2e-3;
+/// So many offsets beside the pole half of the offset is in the tool axis. The solutions turn by
+/// 1/32 rad at most for it.
+inline constexpr double kPoleWidth = 16;
 
 /// Volume of the linear directions below which they do not span space.
 inline constexpr double kMinVolume = 1e-9;
@@ -139,14 +151,48 @@ template <class S>
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Forward kinematics, eq. 4.1.
+/// By how much the angle χ is lacking where the tool axis is nearest to the pole that it misses,
+/// half of it kPoleWidth times the offset farther off: eq. 4.12. `chord2` is |K - a|².
+template <class S>
+[[nodiscard]] inline S lack_at(const ChainKinematics& k, const S& chord2) noexcept {
+  const double width = kPoleWidth * k.pole_offset_rad, width2 = width * width;
+  return (k.pole_offset_rad * width2) / (chord2 + width2);
+}
+
+/// Rot(b, β) k0 with χ as it is beside the pole. Each round leaves less than 1/20 of the error.
+template <class S>
+[[nodiscard]] inline Vec3<S> axis_beside_pole(const ChainKinematics& k,
+                                              const SinCos<S>& b) noexcept {
+  constexpr int kRounds = 14;
+  const Vec3<S> along = turn<S>(k.b.axis, b, k.home_axis);
+  const Vec3<S> across = turn<S>(k.b.axis, b, k.outwards);
+  Vec3<S> out = along;
+  for (int round = 0; round < kRounds; ++round) {
+    S chord2(0.0);
+    for (int i = 0; i < 3; ++i) chord2 += (out[i] - k.a.axis[i]) * (out[i] - k.a.axis[i]);
+    const SinCos<S> by = sin_cos(lack_at(k, chord2));
+    for (int i = 0; i < 3; ++i) out[i] = by.cos * along[i] - by.sin * across[i];
+  }
+  return out;
+}
+
+/// Where the tool axis really points: eq. 4.2. forward() differs from it beside a pole that is
+/// missed.
+[[nodiscard]] inline Vector3 true_axis(const ChainKinematics& k, const JointVector& q) noexcept {
+  const SinCos<double> a = sin_cos(k.a.sign * q[static_cast<std::size_t>(k.a.joint)]);
+  const SinCos<double> b = sin_cos(k.b.sign * q[static_cast<std::size_t>(k.b.joint)]);
+  return turn<double>(k.a.axis, a, turn<double>(k.b.axis, b, k.home_axis));
+}
+
+/// Forward kinematics, eq. 4.1; of a machine that misses its pole with the axis of eq. 4.12.
 template <class S>
 [[nodiscard]] inline Pose<S> forward(const ChainKinematics& k, double tool_length_mm,
                                      const Joints<S>& q) noexcept {
   const SinCos<S> a = sin_cos(S(k.a.sign * q[k.a.joint]));
   const SinCos<S> b = sin_cos(S(k.b.sign * q[k.b.joint]));
-  Pose<S> out{unmoved_tip(k, tool_length_mm, a, b),
-              turn<S>(k.a.axis, a, turn<S>(k.b.axis, b, k.home_axis))};
+  const bool misses_pole = k.pole_offset_rad != 0;
+  const Vec3<S> tilted = misses_pole ? axis_beside_pole(k, b) : turn<S>(k.b.axis, b, k.home_axis);
+  Pose<S> out{unmoved_tip(k, tool_length_mm, a, b), turn<S>(k.a.axis, a, tilted)};
   for (int i = 0; i < 3; ++i) {
     const Vec3<S> d = column(k, i, a, b);
     for (int row = 0; row < 3; ++row) out.tip[row] += d[row] * q[k.linear[i].joint];
@@ -163,28 +209,63 @@ template <class S>
           f(2, 0) * v[0] + f(2, 1) * v[1] + f(2, 2) * v[2]};
 }
 
-/// The spherical triangle of the two rotary axes and the tool axis by its half-angle formulas,
-/// eq. 4.5 and 4.6. `z` is the tool axis in the frame of joint a, unit.
+/// Sines and cosines of half the angle θ between the tool axis and a, and sin² θ.
 template <class S>
-struct Triangle {
-  S n1, n2, n3, n4;
-  S sine2;  ///< of the angle between the tool axis and a, squared
-  S root;   ///< sqrt(n1 n2 n3 n4): half the orientation part of the measure, eq. 4.10
-  bool is_reachable;
+struct HalfAngle {
+  S sin, cos, sine2;
 };
 
+/// `z` is the tool axis in the frame of joint a, unit.
 template <class S>
-[[nodiscard]] inline Triangle<S> triangle(const ChainKinematics& k, const Vec3<S>& z) noexcept {
+[[nodiscard]] inline HalfAngle<S> half_angle(const Vec3<S>& z) noexcept {
   using std::sqrt;
   const S sine2 = z[0] * z[0] + z[1] * z[1];
   const S apart = 1.0 - z[2], along = 1.0 + z[2];
-  const S half_sin = 0.5 * sqrt(sine2 + apart * apart);
-  const S half_cos = 0.5 * sqrt(sine2 + along * along);
-  Triangle<S> t{half_sin * k.m_cos + half_cos * k.m_sin,
-                half_sin * k.m_cos - half_cos * k.m_sin,
-                half_cos * k.p_sin - half_sin * k.p_cos,
-                half_cos * k.p_sin + half_sin * k.p_cos,
-                sine2,
+  return {0.5 * sqrt(sine2 + apart * apart), 0.5 * sqrt(sine2 + along * along), sine2};
+}
+
+/// Sines and cosines of m and p, eq. 4.5.
+template <class S>
+struct Cone {
+  S m_sin, m_cos, p_sin, p_cos;
+};
+template <class S>
+struct PoleCone : Cone<S> {
+  S share;  ///< sin χ of the machine over that of the cone
+};
+
+[[nodiscard]] inline Cone<double> cone_of(const ChainKinematics& k) noexcept {
+  return {k.m_sin, k.m_cos, k.p_sin, k.p_cos};
+}
+
+/// Beside the pole that the tool axis misses, the cone that goes through it; farther off that of
+/// the machine, eq. 4.12.
+template <class S>
+[[nodiscard]] inline PoleCone<S> pole_cone(const ChainKinematics& k,
+                                           const HalfAngle<S>& half) noexcept {
+  const SinCos<S> by = sin_cos(-0.5 * lack_at(k, 4.0 * (half.sin * half.sin)));
+  const Cone<S> cone{k.m_sin * by.cos + k.m_cos * by.sin, k.m_cos * by.cos - k.m_sin * by.sin,
+                     k.p_sin * by.cos + k.p_cos * by.sin, k.p_cos * by.cos - k.p_sin * by.sin};
+  const double own = k.p_sin * k.m_cos + k.p_cos * k.m_sin;  // χ = p + m
+  return {cone, own / (cone.p_sin * cone.m_cos + cone.p_cos * cone.m_sin)};
+}
+
+/// The spherical triangle of the two rotary axes and the tool axis by its half-angle formulas,
+/// eq. 4.5 and 4.6.
+template <class S>
+struct Triangle {
+  S n1, n2, n3, n4;
+  S root;  ///< sqrt(n1 n2 n3 n4): half the orientation part of the measure, eq. 4.10
+  bool is_reachable;
+};
+
+template <class S, class C>
+[[nodiscard]] inline Triangle<S> triangle(const HalfAngle<S>& half, const Cone<C>& cone) noexcept {
+  using std::sqrt;
+  Triangle<S> t{half.sin * cone.m_cos + half.cos * cone.m_sin,
+                half.sin * cone.m_cos - half.cos * cone.m_sin,
+                half.cos * cone.p_sin - half.sin * cone.p_cos,
+                half.cos * cone.p_sin + half.sin * cone.p_cos,
                 S(0.0),
                 true};
   const double min =
@@ -267,25 +348,40 @@ template <class S>
   return true;
 }
 
+/// What solve() does with the angles between the axes as `cone` has them.
+template <class S, class AnyCone>
+[[nodiscard]] inline bool solve_on(const ChainKinematics& k, double tool_length_mm,
+                                   const Vec3<S>& tip, const Vec3<S>& z, const HalfAngle<S>& half,
+                                   const AnyCone& cone, double branch_sign, Joints<S>& q) noexcept {
+  const Triangle<S> t = triangle(half, cone);
+  if (!t.is_reachable) return false;
+  // n1 n3 + n2 n4 = sin θ sin ψ and n1 n2 + n3 n4 = sin ψ sin χ: sines and cosines need no norm.
+  const S twice_root = (2.0 * branch_sign) * t.root;
+  const S a_cos = t.n2 * t.n4 - t.n1 * t.n3, b_cos = t.n3 * t.n4 - t.n1 * t.n2;
+  const S per_sines = 1.0 / (k.psi_sin * half.sine2);
+  const SinCos<S> a{(z[1] * a_cos - z[0] * twice_root) * per_sines,
+                    (z[0] * a_cos + z[1] * twice_root) * per_sines};
+  SinCos<S> b{-(twice_root * k.b0_cos + b_cos * k.b0_sin),
+              b_cos * k.b0_cos - twice_root * k.b0_sin};
+  if constexpr (std::is_same_v<AnyCone, PoleCone<S>>) {
+    b = {cone.share * b.sin, cone.share * b.cos};
+  }
+  q = {};
+  q[k.a.joint] = k.a.sign * atan2(a.sin, a.cos);
+  q[k.b.joint] = k.b.sign * atan2(b.sin, b.cos);
+  return place_tip(k, tool_length_mm, tip, a, b, q);
+}
+
 /// Inverse kinematics off the poles, eq. 4.5 to 4.9; `branch_sign` is τ, `z` the tool axis in the
 /// frame of joint a, unit. Returns whether the pose is in reach; windings are the caller's.
 template <class S>
 [[nodiscard]] inline bool solve(const ChainKinematics& k, double tool_length_mm, const Vec3<S>& tip,
                                 const Vec3<S>& z, double branch_sign, Joints<S>& q) noexcept {
-  const Triangle<S> t = triangle(k, z);
-  if (!t.is_reachable) return false;
-  // n1 n3 + n2 n4 = sin θ sin ψ and n1 n2 + n3 n4 = sin ψ sin χ: sines and cosines need no norm.
-  const S twice_root = (2.0 * branch_sign) * t.root;
-  const S a_cos = t.n2 * t.n4 - t.n1 * t.n3, b_cos = t.n3 * t.n4 - t.n1 * t.n2;
-  const S per_sines = 1.0 / (k.psi_sin * t.sine2);
-  const SinCos<S> a{(z[1] * a_cos - z[0] * twice_root) * per_sines,
-                    (z[0] * a_cos + z[1] * twice_root) * per_sines};
-  const SinCos<S> b{-(twice_root * k.b0_cos + b_cos * k.b0_sin),
-                    b_cos * k.b0_cos - twice_root * k.b0_sin};
-  q = {};
-  q[k.a.joint] = k.a.sign * atan2(a.sin, a.cos);
-  q[k.b.joint] = k.b.sign * atan2(b.sin, b.cos);
-  return place_tip(k, tool_length_mm, tip, a, b, q);
+  const HalfAngle<S> half = half_angle(z);
+  if (k.pole_offset_rad != 0) {
+    return solve_on(k, tool_length_mm, tip, z, half, pole_cone(k, half), branch_sign, q);
+  }
+  return solve_on(k, tool_length_mm, tip, z, half, cone_of(k), branch_sign, q);
 }
 
 /// The joints with rotary joint a given: the tip exact, the axis the nearest that is left,
@@ -314,6 +410,9 @@ template <class S>
 
 /// Angle from the axis to the nearest pole, in [0, π]; π where the machine has none.
 [[nodiscard]] double pole_distance(const ChainKinematics& k, const Vector3& axis) noexcept;
+
+/// det D of eq. 4.3: the volume that the linear directions span, signed, at the angles `q`.
+[[nodiscard]] double slide_volume(const ChainKinematics& k, const JointVector& q) noexcept;
 
 /// sqrt(det JᵀJ), eq. 4.10: zero on the poles, at the limits of reach, and where the linear joints
 /// do not span space.

@@ -66,6 +66,11 @@ template <class S>
           {in_W(X_MT.axis, 0), in_W(X_MT.axis, 1), in_W(X_MT.axis, 2)}};
 }
 
+/// By how much the tool axis misses the pole, signed; 0 where it does not.
+[[nodiscard]] inline double pole_offset_rad(const MachineModel& model) noexcept {
+  return model.family == MachineFamily::kChain ? model.chain.pole_offset_rad : 0;
+}
+
 /// Returns tip and tool axis in W of the joints `q`.
 /// RT: cycle. Proof: tests/golden, tests/property/kinematics.
 template <class S>
@@ -82,9 +87,29 @@ template <class S>
   return pose_in_workpiece(model, lai::forward(model.lai, model.lai.pivot_mm + tool_length_mm, q));
 }
 
+/// forward() with the tool axis as it really is: of a machine whose tool axis misses the pole it is
+/// off there (docs/kinematics.md, eq. 4.12).
+[[nodiscard]] inline ToolPose true_pose(const MachineModel& model, double tool_length_mm,
+                                        const JointVector& q) noexcept {
+  ToolPose pose = forward(model, tool_length_mm, q);
+  if (pole_offset_rad(model) != 0) {
+    pose.axis = model.X_MW.rotation.transpose() * chain::true_axis(model.chain, q);
+  }
+  return pose;
+}
+
 /// How many solutions of the inverse kinematics a pose has: `branch` runs from 0 below it.
 [[nodiscard]] inline int branch_count(const MachineModel& model) noexcept {
   return model.family == MachineFamily::kRobot ? robot::kBranchCount : 2;
+}
+
+/// Whether joints may turn as sharply as one pleases off the poles of the tool axis too: of a robot
+/// at its singular places, of slides where the rotary joints turn them into one plane, about the
+/// axes that a chain without a pole does not reach.
+[[nodiscard]] inline bool has_inner_singularities(const MachineModel& model) noexcept {
+  if (model.family != MachineFamily::kChain) return model.family == MachineFamily::kRobot;
+  const ChainKinematics& k = model.chain;
+  return k.slides_align || !(k.has_pole || k.has_opposite_pole);
 }
 
 /// Index of the rotary joint that the pole leaves free; -1 where the machine has no pole of the

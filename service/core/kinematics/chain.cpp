@@ -54,6 +54,20 @@ std::string find_fault(const ChainKinematics& k) {
   return "";
 }
 
+/// Whether the linear joints lie in one plane, or nearly so, at some angles of the rotary ones.
+bool do_slides_align(const ChainKinematics& k) {
+  constexpr int kSteps = 36;
+  constexpr double kNearly = 0.5;  // of what they span at home
+  const double home = std::abs(chain::slide_volume(k, {}));
+  for (int n = 0; n < kSteps * kSteps; ++n) {
+    JointVector q{};
+    q[static_cast<std::size_t>(k.a.joint)] = 2 * std::numbers::pi / kSteps * (n / kSteps);
+    q[static_cast<std::size_t>(k.b.joint)] = 2 * std::numbers::pi / kSteps * (n % kSteps);
+    if (std::abs(chain::slide_volume(k, q)) < kNearly * home) return true;
+  }
+  return false;
+}
+
 /// Frames of both rotary joints, and what stands in them.
 void work_out_frames(ChainKinematics& k) {
   const Vector3 y = k.a.axis.cross(k.b.axis).normalized();
@@ -70,9 +84,22 @@ void work_out_frames(ChainKinematics& k) {
   const bool are_neighbours =
       k.linear[0].group == k.linear[1].group && k.linear[1].group == k.linear[2].group;
   k.group = are_neighbours ? k.linear[0].group : -1;
+  k.slides_align = !are_neighbours && do_slides_align(k);
   Eigen::Matrix3d directions;
   for (int i = 0; i < 3; ++i) directions.col(i) = k.linear[i].direction;
   k.slide_inverse = ((k.group == 2 ? frame_b : k.frame_a) * directions).inverse();
+}
+
+/// Counts joint a the other way round where the tool axis only just misses its other end: the pole
+/// that is missed is along +a.
+void face_missed_pole(ChainKinematics& k) {
+  const double gap =
+      std::numbers::pi - angle_between(k.a.axis, k.b.axis) - angle_between(k.b.axis, k.home_axis);
+  const bool is_missed =
+      snapped(std::sin(0.5 * gap)) != 0 && std::abs(gap) <= chain::kMaxPoleOffset_rad;
+  if (!is_missed || !(k.a.axis.dot(k.home_axis) < 0)) return;
+  k.a.axis = -k.a.axis;
+  k.a.sign = -k.a.sign;
 }
 
 void work_out_constants(ChainKinematics& k) {
@@ -83,7 +110,10 @@ void work_out_constants(ChainKinematics& k) {
   k.m_cos = k.m_sin == 0 ? 1.0 : std::cos(m);
   k.p_cos = snapped(std::cos(p));
   k.p_sin = k.p_cos == 0 ? 1.0 : std::sin(p);
-  k.has_pole = k.m_sin == 0;
+  const bool is_measured_pole = k.m_sin != 0 && std::abs(2 * m) <= chain::kMaxPoleOffset_rad;
+  k.pole_offset_rad = is_measured_pole ? 2 * m : 0;
+  k.has_pole = k.m_sin == 0 || is_measured_pole;
+  k.outwards = (k.b.axis.dot(k.home_axis) * k.home_axis - k.b.axis).normalized();
   k.has_opposite_pole = k.p_cos == 0;
   k.tilt_sin = k.b.axis.cross(k.home_axis);
   k.tilt_cos = k.home_axis - k.b.axis.dot(k.home_axis) * k.b.axis;
@@ -109,6 +139,7 @@ Expected<ChainKinematics, std::string> describe_chain(
   std::string fault = sort_joints(k);
   if (fault.empty()) fault = find_fault(k);
   if (!fault.empty()) return tl::unexpected(fault);
+  face_missed_pole(k);
   work_out_constants(k);
   return k;
 }
@@ -123,14 +154,20 @@ double pole_distance(const ChainKinematics& k, const Vector3& axis) noexcept {
   return distance;
 }
 
-double measure(const ChainKinematics& k, const JointVector& q) noexcept {
+double slide_volume(const ChainKinematics& k, const JointVector& q) noexcept {
   const SinCos<double> a = sin_cos(k.a.sign * q[k.a.joint]);
   const SinCos<double> b = sin_cos(k.b.sign * q[k.b.joint]);
   Eigen::Matrix3d d;
   for (int i = 0; i < 3; ++i) d.col(i) = column(k, i, a, b);
+  return d.determinant();
+}
+
+double measure(const ChainKinematics& k, const JointVector& q) noexcept {
+  const SinCos<double> a = sin_cos(k.a.sign * q[k.a.joint]);
+  const SinCos<double> b = sin_cos(k.b.sign * q[k.b.joint]);
   const Vector3 axis = turn<double>(k.a.axis, a, turn<double>(k.b.axis, b, k.home_axis));
   const Vector3 second = turn<double>(k.a.axis, a, k.b.axis);
-  return std::abs(d.determinant()) * std::abs(k.a.axis.cross(second).dot(axis));
+  return std::abs(slide_volume(k, q)) * std::abs(k.a.axis.cross(second).dot(axis));
 }
 
 Reach reach(const ChainKinematics& k) noexcept {

@@ -9,11 +9,12 @@
 
 #include "meridian/kinematics/jacobian.hpp"
 #include "meridian/units.hpp"
+#include "service/text/printed.hpp"
 
 namespace meridian::inspect {
 namespace {
 
-constexpr double kTrial_mm = 10, kTrial_deg = 5, kOffPole_deg = 10;
+constexpr double kTrial_mm = 10, kTrial_deg = 5, kOffPole_deg = 10, kNarrow_deg = 5;
 constexpr double kTravelMargin = 1e-9;
 constexpr int kRoundTrips = 400;
 
@@ -140,6 +141,14 @@ JointVector trial_joints(const MachineModel& model) {
   return moved(model, q, tilt, step);
 }
 
+/// Radius of the cone about the rotary axis next to the workpiece that no tool axis comes into,
+/// where it is so narrow that it can hardly be meant; 0: none.
+double hole_rad(const MachineModel& model) {
+  if (model.family != MachineFamily::kChain || redundant_joint(model) >= 0) return 0;
+  const double hole = chain::reach(model.chain).min_rad;
+  return hole < units::rad_from_deg(kNarrow_deg) ? hole : 0;
+}
+
 Inspection inspect(const MachineModel& model) {
   Inspection out;
   out.skeleton = skeleton_of(model);
@@ -164,6 +173,17 @@ Inspection inspect(const MachineModel& model) {
     out.warnings.push_back(
         "the origin of the workpiece is out of reach with the tool along its z: place it with "
         "[frame] or --frame, or look at travel");
+  }
+  if (const double off = std::abs(pole_offset_rad(model)); off > model.tolerances.axis_rad) {
+    out.warnings.push_back(
+        text::printed("on the pole the tool axis is off by %.3g deg, more than tolerances.axis_deg",
+                      units::deg_from_rad(off)));
+  }
+  if (const double hole = hole_rad(model); hole > 0) {
+    out.warnings.push_back(text::printed(
+        "no tool axis comes within %.3g deg of that of %s: where the tool is meant to stand along "
+        "it, measure directions and tool_axis again",
+        units::deg_from_rad(hole), model.joints[at(model.chain.a.joint)].name.c_str()));
   }
   constexpr double kRound_mm = 1e-6;
   if (!(out.round_trip_mm < kRound_mm)) {

@@ -97,6 +97,13 @@ std::string trial_text(const Inspection& in, const MachineModel& model) {
   return out;
 }
 
+/// What is left in the tool axis on a pole that it misses.
+std::string missed_pole_text(const MachineModel& model) {
+  const double off = pole_offset_rad(model);
+  if (off == 0) return "";
+  return printed("the tool axis misses it by %.3g deg; ", units::deg_from_rad(std::abs(off)));
+}
+
 std::string pole_text(const Inspection& in, const MachineModel& model) {
   std::string out;
   const int free = redundant_joint(model);
@@ -107,6 +114,7 @@ std::string pole_text(const Inspection& in, const MachineModel& model) {
   } else {
     out = "pole       tool axis along " + direction_text(pole_direction(model)) + ": " +
           spec_of(model, free).name + " is free there; ";
+    out += missed_pole_text(model);
   }
   out += printed("measure at home %.4g%s\n", in.home_measure,
                  in.home_measure >= 1e-9 ? ""

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "meridian/kinematics/jacobian.hpp"
 #include "service/machine/inspect/pose_table.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "meridian/kinematics/jacobian.hpp"
 #include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
 #include "service/text/printed.hpp"

@@ -21,6 +21,7 @@
 #include "property/cycle/operated_run.hpp"
 #include "property/cycle/passed_vertices.hpp"
 #include "property/path/hostile_path.hpp"
+#include "property/planner/drawn_machine.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "support/draws.hpp"
 
@@ -120,12 +121,13 @@ PathShares check_path(const MachineModel& machine, const std::vector<ClBlock>& b
   const auto& records = run.world.records;
   shares.feed = largest_feed(run, std::min(blocks.front().feed, machine.max_feed_mm_per_s));
   std::uint64_t before = 0;
-  PassedVertices vertices(blocks, machine.tolerances.tip_mm, machine.tolerances.axis_rad);
+  const double tip_mm = machine.tolerances.tip_mm;
+  const double axis_rad = machine.tolerances.axis_beside_pole_rad();
+  PassedVertices vertices(blocks, tip_mm, axis_rad);
   for_each_cut(machine, records, 0, 1, [&](const CycleRecord& record, const ToolPose& pose) {
     vertices.add(record.sequence, pose, record.setpoint.cycle == before + 1);
     before = record.setpoint.cycle;
-    const double off = distance_from(paths, record.sequence, pose, machine.tolerances.tip_mm,
-                                     machine.tolerances.axis_rad, shares.off);
+    const double off = distance_from(paths, record.sequence, pose, tip_mm, axis_rad, shares.off);
     shares.off = std::max(shares.off, off);
   });
   // Of a program that was refused on the way what lies behind is not missed.
@@ -134,9 +136,8 @@ PathShares check_path(const MachineModel& machine, const std::vector<ClBlock>& b
 }
 
 /// Of a program whose blocks come late one part of `parts` is there before the start.
-void run_program(std::uint32_t seed, Sweep& sweep, std::size_t parts = 3) {
+void run_program(MachineModel machine, std::uint32_t seed, Sweep& sweep, std::size_t parts = 3) {
   RandomPrograms random(seed);
-  MachineModel machine = seed % 2 == 0 ? bench_machine() : lai_machine();
   machine.transition = Transition::kSmooth;
   machine.starve_auto_resume_s = 100;
   if (seed % 5 == 0) machine.max_feed_override = 1.5;
@@ -179,6 +180,10 @@ void run_program(std::uint32_t seed, Sweep& sweep, std::size_t parts = 3) {
                 << run.world.count(EventCode::kAlarm);
 }
 
+void run_program(std::uint32_t seed, Sweep& sweep, std::size_t parts = 3) {
+  run_program(seed % 2 == 0 ? bench_machine() : lai_machine(), seed, sweep, parts);
+}
+
 /// Programs that rest exactly on the pole where the run before came from its side.
 TEST(SmoothSweep, GoesOnFromARestOnThePoleWithoutAStepOfC) {
   Sweep sweep;
@@ -201,12 +206,7 @@ TEST(SmoothSweep, EasesNoCornerOutOfTheTolerance) {
   EXPECT_EQ(sweep.refused, 0);
 }
 
-TEST(SmoothSweep, KeepsEveryLimitFeedAndToleranceUnderAnyOperation) {
-  const std::uint32_t first = number_of("MERIDIAN_SWEEP_SEED", 1);
-  const std::uint32_t programs =
-      number_of("MERIDIAN_SWEEP_PROGRAMS", static_cast<std::uint32_t>(draws(kPrograms)));
-  Sweep sweep;
-  for (std::uint32_t seed = first; seed < first + programs; ++seed) run_program(seed, sweep);
+void print(const Sweep& sweep) {
   std::printf(
       "%d programs (%d refused), %.0f s, %d holds, %llu times dry, %d FaultStops: v %.6f a %.6f j "
       "%.6f feed %.6f of the limits, %.4f tolerances, vertices %.4f; FaultStops v %.4f a %.4f j "
@@ -215,8 +215,33 @@ TEST(SmoothSweep, KeepsEveryLimitFeedAndToleranceUnderAnyOperation) {
       static_cast<unsigned long long>(sweep.dry), sweep.faults, sweep.worst.v, sweep.worst.a,
       sweep.worst.j, sweep.feed, sweep.off, sweep.missed, sweep.worst_fault.v, sweep.worst_fault.a,
       sweep.worst_fault.j, sweep.bad);
+}
+
+struct Seeds {
+  std::uint32_t first = number_of("MERIDIAN_SWEEP_SEED", 1);
+  std::uint32_t programs =
+      number_of("MERIDIAN_SWEEP_PROGRAMS", static_cast<std::uint32_t>(draws(kPrograms)));
+};
+
+TEST(SmoothSweep, KeepsEveryLimitFeedAndToleranceUnderAnyOperation) {
+  const Seeds seeds;
+  Sweep sweep;
+  for (std::uint32_t n = 0; n < seeds.programs; ++n) run_program(seeds.first + n, sweep);
+  print(sweep);
   EXPECT_LT(sweep.refused, sweep.programs / 4 + 1);
   EXPECT_GT(sweep.seconds, sweep.programs);
+}
+
+/// Programs that leave the travel of a drawn machine do not start.
+TEST(SmoothSweep, KeepsThemOnMachinesThatNobodyShippedToo) {
+  const Seeds seeds;
+  Sweep sweep;
+  for (std::uint32_t n = 0; n < seeds.programs; ++n) {
+    const std::uint32_t seed = seeds.first + n;
+    if (const auto machine = drawn_machine(seed)) run_program(*machine, seed, sweep);
+  }
+  print(sweep);
+  EXPECT_LT(sweep.refused, sweep.programs);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "property/cycle/passed_vertices.hpp"
 #include "property/path/hostile_path.hpp"
 #include "property/planner/creeping.hpp"
+#include "property/planner/drawn_machine.hpp"
 #include "property/planner/random_programs.hpp"
 #include "property/planner/smooth_trace.hpp"
 #include "service/machine/file/machine_file.hpp"
@@ -155,6 +156,7 @@ void run_program(const MachineModel& model, std::uint32_t seed, std::uint32_t ki
   if (trace.last.status == PlanStatus::kRefused) {
     sweep.refused[static_cast<int>(trace.last.reject.code)] += " " + std::to_string(seed);
   }
+  EXPECT_NE(trace.last.status, PlanStatus::kNoRoom) << "neither planned to its end nor refused";
   EXPECT_TRUE(are_same(trace, plan(model, blocks, how, 7))) << "depends on when blocks are read";
   if (trace.times.empty()) return;
   sweep.seconds += trace.duration_s();
@@ -216,6 +218,23 @@ TEST(MachineSeed, RunsThroughThePoleBehindFastCircles) {
                 Transition::kSmooth, sweep);
     EXPECT_TRUE(sweep.refused.empty());
   }
+}
+
+TEST_P(MachineSweep, KeepsEveryPromiseOnMachinesThatNobodyShipped) {
+  const auto first = number_of<std::uint32_t>("MERIDIAN_MACHINE_SEED", 1);
+  const auto programs = number_of<std::uint32_t>("MERIDIAN_MACHINE_PROGRAMS", kPrograms);
+  Sweep sweep;
+  int no_machines = 0;
+  for (std::uint32_t seed = first; seed < first + programs; ++seed) {
+    SCOPED_TRACE("drawn machine " + std::to_string(seed));
+    if (const auto model = drawn_machine(seed)) {
+      run_program(*model, seed, seed % kKinds, GetParam(), sweep);
+    } else {
+      ++no_machines;
+    }
+  }
+  sweep.print("drawn");
+  EXPECT_LE(10 * no_machines, programs + 10) << "refused by the loader";
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, MachineSweep,

@@ -207,6 +207,24 @@ TEST(Slips, AreFactsWhereTheFileSaysThatItsNumbersAreMeasured) {
   EXPECT_TRUE(machine_with(machine, "tool_axis =", "measured = true\ntool_axis =").is_measured);
 }
 
+TEST(Pole, ThatTheToolAxisMissesIsReportedAndOneThatItMissesByMoreIsWarnedOf) {
+  const std::string c = "kind = \"rotary\"\nside = \"table\"\ndirection = [0, 0, 1]";
+  const auto leaning = [&](const char* x) {
+    std::string to = c;
+    return machine_with("trunnion-ac", c,
+                        to.replace(to.find("[0, 0, 1]"), 2, std::string("[") + x));
+  };
+  const MachineModel missed = leaning("1e-4");
+  EXPECT_NE(to_text(inspect(missed), missed).find("the tool axis misses it by 0.00573 deg; "),
+            std::string::npos);
+  const std::string hole = "no tool axis comes within 0.286 deg of that of C";
+  EXPECT_FALSE(is_warned(missed, "no tool axis comes within"));
+  EXPECT_TRUE(is_warned(leaning("5e-3"), hole));
+  EXPECT_TRUE(is_warned(leaning("1.9e-3"), "on the pole the tool axis is off by 0.109 deg"));
+  const MachineModel usual = config::load_machine(test::shipped_file("trunnion-ac"));
+  EXPECT_EQ(to_text(inspect(usual), usual).find("misses"), std::string::npos);
+}
+
 TEST(Slips, AreNotDirectionsThatSomebodyBuilds) {
   EXPECT_TRUE(
       inspect(machine_with("trunnion-ac", "point_mm = [0, 0, -40]", "point_mm = [0, 25, -40]"))

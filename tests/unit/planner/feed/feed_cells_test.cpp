@@ -222,6 +222,22 @@ TEST(CellGrid, SaysWhenNoMoreSpansFit) {
   EXPECT_TRUE(g.grid.has_room()) << "what became cells waits no more";
 }
 
+/// A robot may be so slow beside a singular place that one span becomes thousands of cells. They
+/// are made when the spans behind it are there: these have to find room.
+TEST(CellGrid, TakesTheSpansBehindOneThatBecomesAsManyCellsAsItMay) {
+  MachineModel robot = bench_machine();
+  robot.family = MachineFamily::kRobot;  // its spans are joint moves
+  StraightGrid g(robot);
+  int spans = 0;
+  for (; g.grid.has_room() && g.grid.last() == 0; ++spans) {
+    FeedSpan span = g.next(5);
+    span.u_speed_mm_per_s = 1e-4;
+    ASSERT_FALSE(is_fault(g.grid.push(span)));
+  }
+  EXPECT_GT(g.grid.last(), 400) << "more than a span of even cells becomes, of " << spans;
+  EXPECT_EQ(spans, CellGrid::kAhead + 1);
+}
+
 TEST(CellGrid, ACellBoundsTheDerivativesOfItsSamplesAndAnEighthOfTheirRangeMore) {
   StraightGrid g;
   const ToolPose from{Vector3(0, 30, -20), Vector3(0.3, 0.3, 1).normalized()};

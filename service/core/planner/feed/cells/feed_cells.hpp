@@ -68,7 +68,9 @@ class CellGrid {
 
   /// Whether another span may be pushed.
   [[nodiscard]] bool has_room() const noexcept {
-    return waiting_count_ < kWaiting && static_cast<int>(drafts_.size()) < kDrafts / 2;
+    // However many cells the first span becomes, they wait for the kAhead behind it.
+    const bool are_few = static_cast<int>(drafts_.size()) < kDrafts / 2 || waiting_count_ <= kAhead;
+    return waiting_count_ < kWaiting && are_few;
   }
 
   /// Takes the next span; a fault ends the path, cells before it stay valid.
@@ -133,6 +135,8 @@ class CellGrid {
   static constexpr int kMaxPerSpan = 400;
   static constexpr int kWaiting = kMin + kAhead + 4;
   static constexpr int kDrafts = 4096;
+  /// Of a span that is graded, so that those behind it find room.
+  static constexpr int kMaxGraded = kDrafts / (kAhead + 2);
   static constexpr double kRatio = 2.5;  ///< of the lengths of neighbouring cells
 
   /// A cell to be: a piece of a span that waits.
@@ -150,9 +154,9 @@ class CellGrid {
   /// How many cells `span` is worth.
   [[nodiscard]] int cells_of(const FeedSpan& span) const noexcept;
   void draft_cells(const FeedSpan& span) noexcept;
-  /// Beside a singular place of a robot the time per u changes manifold inside of a span: halves
-  /// the cell at `x` as long as it takes too long where it is slowest.
-  void draft_graded(const FeedSpan& span, double x, double h) noexcept;
+  /// Beside an inner singularity the time per u changes manifold inside of a span: halves the cell
+  /// at `x` as long as it takes too long where it is slowest and there are no more than `max`.
+  void draft_graded(const FeedSpan& span, double x, double h, std::size_t max) noexcept;
   /// Halves cells longer than `ratio` times a neighbour; `left` is the one before the first.
   void halve(double left, double ratio, int rounds) noexcept;
   [[nodiscard]] bool split(std::size_t draft) noexcept;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "meridian/kinematics/kinematics.hpp"
 #include "service/core/planner/feed/cells/feed_cells.hpp"
 
 /// How many cells a span becomes, and where they lie.
@@ -33,8 +34,8 @@ int CellGrid::cells_of(const FeedSpan& span) const noexcept {
     fastest = std::min(fastest, here);
   }
   // About a bend the slowest place of a cell bounds all of it. Where the machine cannot be the path
-  // ends anyway, and a robot's cells are graded one by one.
-  const bool is_bend = fastest > 0 && model_.family != MachineFamily::kRobot;
+  // ends anyway, and cells beside inner singularities are graded one by one.
+  const bool is_bend = fastest > 0 && !has_inner_singularities(model_);
   if (is_bend && slowest > kUneven * fastest) time = kFiner * slowest;
   time *= span.length;
   return static_cast<int>(std::ceil(std::min(time / settings_.cell_s, 1.0 * kMaxPerSpan)));
@@ -45,31 +46,32 @@ void CellGrid::draft_cells(const FeedSpan& span) noexcept {
   const int cells = std::clamp(cells_of(span), 1, std::clamp(room, 1, kMaxPerSpan));
   const double h = span.length / cells;
   // A span that says how many cells it becomes is graded already.
-  const bool is_graded = model_.family == MachineFamily::kRobot && span.cells == 0;
+  const auto max_graded = drafts_.size() + kMaxGraded;
+  const bool is_graded = has_inner_singularities(model_) && span.cells == 0;
   for (int k = 0; k < cells; ++k) {
     if (is_graded) {
-      draft_graded(span, span.begin + k * h, h);
+      draft_graded(span, span.begin + k * h, h, max_graded);
     } else {
       drafts_.push_back({waiting_count_ - 1, span.begin + k * h, h});
     }
   }
 }
 
-void CellGrid::draft_graded(const FeedSpan& span, double x, double h) noexcept {
+void CellGrid::draft_graded(const FeedSpan& span, double x, double h, std::size_t max) noexcept {
   const double slowest =
       std::max({time_at(span, x), time_at(span, x + 0.5 * h), time_at(span, x + h)});
-  const bool has_room = static_cast<int>(drafts_.size()) < kDrafts - kMaxPerSpan;
+  const bool has_room = drafts_.size() < std::min<std::size_t>(max, kDrafts - kMaxPerSpan);
   if (slowest * h > kMaxCells * settings_.cell_s && h > kMinSplit_mm && has_room) {
-    draft_graded(span, x, 0.5 * h);
-    draft_graded(span, x + 0.5 * h, 0.5 * h);
+    draft_graded(span, x, 0.5 * h, max);
+    draft_graded(span, x + 0.5 * h, 0.5 * h, max);
   } else {
     drafts_.push_back({waiting_count_ - 1, x, h});
   }
 }
 
-/// Beside a singular place of a robot joints turn sharply: into halves, as long as there is room.
+/// Beside an inner singularity joints turn sharply: into halves, as long as there is room.
 bool CellGrid::split(std::size_t draft) noexcept {
-  if (model_.family != MachineFamily::kRobot || drafts_.size() == drafts_.capacity() ||
+  if (!has_inner_singularities(model_) || drafts_.size() == drafts_.capacity() ||
       drafts_[draft].h < kMinSplit_mm) {
     return false;
   }

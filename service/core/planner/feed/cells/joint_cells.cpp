@@ -14,6 +14,7 @@ namespace meridian {
 namespace {
 
 constexpr double kJointNoise_rad = 1e-9;  // of a robot's joint, well off its singular places
+constexpr double kChainNoise = 1e-5;      // of a chain's joint beside its pole too, mm or rad
 constexpr double kMaxOff = 0.01;          // of a joint between samples, of what it bends by
 constexpr double kBetween = 1.25;         // of a second derivative, over what both ends say
 
@@ -73,6 +74,25 @@ double hardness(const MachineModel& model, const LimitedVector& d1) noexcept {
   return hardest;
 }
 
+/// The linear joint that goes farthest where the three lie in one plane between `a` and `b`, which
+/// turns their volume over; -1: they do not.
+int slide_turned_over(const ChainKinematics& k, const LimitedVector& a,
+                      const LimitedVector& b) noexcept {
+  if (!k.slides_align) return -1;
+  JointVector from{}, to{};
+  int farthest = k.linear[0].joint;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    from[i] = a[i];
+    to[i] = b[i];
+  }
+  if (chain::slide_volume(k, from) * chain::slide_volume(k, to) > 0) return -1;
+  for (const ChainKinematics::Linear& linear : k.linear) {
+    const int i = linear.joint;
+    if (std::abs(b[i] - a[i]) > std::abs(b[farthest] - a[farthest])) farthest = i;
+  }
+  return farthest;
+}
+
 double axis_noise(const MachineModel& model, const PathPiece& piece, double begin,
                   double end) noexcept {
   const bool is_solved = piece.kind == PathKind::kLine || piece.kind == PathKind::kArc;
@@ -104,7 +124,13 @@ PathFault check_turns(const MachineModel& model, const LimitedVector& a, const L
 
 PathFault check_joins(const MachineModel& model, const JointDerivatives& a,
                       const JointDerivatives& b, double h) noexcept {
-  if (model.family != MachineFamily::kRobot) return {};
+  if (!has_inner_singularities(model)) return {};
+  if (model.family == MachineFamily::kChain) {
+    const int slide = slide_turned_over(model.chain, a.q, b.q);
+    if (slide >= 0) return {PathFault::Kind::kJump, slide, b.q[slide] - a.q[slide]};
+    if (redundant_joint(model) >= 0) return {};
+  }
+  const double noise = model.family == MachineFamily::kRobot ? kJointNoise_rad : kChainNoise;
   for (int i = 0; i < model.joint_count; ++i) {
     const double by = b.q[i] - a.q[i];
     const double off = std::abs(by - 0.5 * h * (a.d1[i] + b.d1[i] + h / 6 * (a.d2[i] - b.d2[i])));
@@ -114,7 +140,7 @@ PathFault check_joins(const MachineModel& model, const JointDerivatives& a,
         std::abs(b.d1[i] - a.d1[i]) + h * (std::max(std::abs(a.d2[i]), std::abs(b.d2[i])) +
                                            h * std::max(std::abs(a.d3[i]), std::abs(b.d3[i])));
     const double rate = std::abs(by) / h + std::abs(a.d1[i]) + std::abs(b.d1[i]);
-    if (!(off <= kJointNoise_rad + kMaxOff * h * std::min(bend, rate))) {
+    if (!(off <= noise + kMaxOff * h * std::min(bend, rate))) {
       return {PathFault::Kind::kJump, i, by};
     }
   }

@@ -94,11 +94,12 @@ struct JointDerivatives {
   const LimitedVector &q, &d1, &d2, &d3;
 };
 
-/// Whether the joints of a robot go from `a` to `b`, `h` apart, as their derivatives there say. At
-/// a singular place they may not: a joint without a direction of its own keeps the value it came
-/// with there, and beside it turns at once, by half a turn where the path goes straight through.
-/// Machines of other families pass: their one singular place is the pole, which the path is cut
-/// for.
+/// Whether joints go from `a` to `b`, `h` apart, as their derivatives there say. At an inner
+/// singularity they may not: a joint of a robot without a direction of its own keeps the value it
+/// came with there, and beside it turns at once, by half a turn where the path goes straight
+/// through; slides that come to lie in one plane leave on one side for ever and come back from the
+/// other. Machines that have none pass: their one singular place is the pole, which the path is
+/// cut for.
 [[nodiscard]] PathFault check_joins(const MachineModel& model, const JointDerivatives& a,
                                     const JointDerivatives& b, double h) noexcept;
 

@@ -78,7 +78,7 @@ PathMatching::Gap PathCheck::gap_before(const Sample& at) const {
 
 /// Takes the matching on to a pose: a setpoint, or one on the way to it.
 void PathCheck::match(const JointVector& joints, const Sample& at, bool is_setpoint) {
-  const ToolPose gauge = forward(model_, 0, joints);
+  const ToolPose gauge = true_pose(model_, 0, joints);
   tolerance_.axis_rad = axis_tolerance_at(gauge.axis);
   const GaugePose pose{gauge.tip, gauge.axis};
   const auto step = is_setpoint && at.missing > 0
