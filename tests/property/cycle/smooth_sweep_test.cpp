@@ -125,6 +125,7 @@ PathShares check_path(const MachineModel& machine, const std::vector<ClBlock>& b
   const double axis_rad = machine.tolerances.axis_beside_pole_rad();
   PassedVertices vertices(blocks, tip_mm, axis_rad);
   for_each_cut(machine, records, 0, 1, [&](const CycleRecord& record, const ToolPose& pose) {
+    if (record.motion == MotionKind::kRewind) return;  // off the part
     vertices.add(record.sequence, pose, record.setpoint.cycle == before + 1);
     before = record.setpoint.cycle;
     const double off = distance_from(paths, record.sequence, pose, tip_mm, axis_rad, shares.off);
@@ -177,7 +178,8 @@ void run_program(MachineModel machine, std::uint32_t seed, Sweep& sweep, std::si
                 << " feed " << path.feed << " tolerances " << path.off << ", vertices missed by "
                 << path.missed << ", FaultStops so far v " << sweep.worst_fault.v << " a "
                 << sweep.worst_fault.a << " j " << sweep.worst_fault.j << ", alarms "
-                << run.world.count(EventCode::kAlarm);
+                << run.world.count(EventCode::kAlarm) << ", the last of code "
+                << run.world.last(EventCode::kAlarm).a;
 }
 
 void run_program(std::uint32_t seed, Sweep& sweep, std::size_t parts = 3) {
