@@ -50,7 +50,7 @@ struct ChainKinematics {
   Rotary a, b;
   std::array<Linear, 3> linear;
   int group = -1;             ///< of all three linear joints; -1: rotary joints stand between them
-  bool slides_align = false;  ///< the rotary joints can turn the linear ones into one plane
+  bool slides_align = false;  ///< rotary joints can turn the linear ones nearly into one plane
 
   /// Frame of joint a: z along a, b in the half plane of z and +x; rows are its directions. The
   /// frame of joint b is this one turned about y, so that z runs along b.

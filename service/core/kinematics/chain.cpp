@@ -58,12 +58,12 @@ std::string find_fault(const ChainKinematics& k) {
 bool do_slides_align(const ChainKinematics& k) {
   constexpr int kSteps = 36;
   constexpr double kNearly = 0.5;  // of what they span at home
-  const double home = std::abs(chain::slide_volume(k, {}));
+  const double home = chain::slide_volume(k, {});
   for (int n = 0; n < kSteps * kSteps; ++n) {
     JointVector q{};
     q[static_cast<std::size_t>(k.a.joint)] = 2 * std::numbers::pi / kSteps * (n / kSteps);
     q[static_cast<std::size_t>(k.b.joint)] = 2 * std::numbers::pi / kSteps * (n % kSteps);
-    if (std::abs(chain::slide_volume(k, q)) < kNearly * home) return true;
+    if (chain::slide_volume(k, q) / home < kNearly) return true;
   }
   return false;
 }

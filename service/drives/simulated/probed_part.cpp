@@ -50,7 +50,7 @@ SimulatedProbe::SimulatedProbe(ProbedPart part, MachineModel machine)
 }
 
 double SimulatedProbe::distance(const JointVector& drives) const noexcept {
-  const ToolPose pose = forward(machine_, part_.length_mm, joints_of(machine_, drives));
+  const ToolPose pose = true_pose(machine_, part_.length_mm, joints_of(machine_, drives));
   const Vector3 centre = pose.tip + part_.ball_mm * pose.axis;
   double nearest = std::numeric_limits<double>::infinity();
   for (const ProbedShape& shape : part_.shapes) {

@@ -83,7 +83,7 @@ class SectionCheck {
   }
 
   [[nodiscard]] ToolPose pose(const JointVector& drives, double length) const {
-    return forward(model_, length, joints_of(model_, drives));
+    return true_pose(model_, length, joints_of(model_, drives));
   }
 
   /// Where a tool of this length is, `share` of the way from where the line before ended. A program

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/protocol/station/smooth_tolerances.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
-#include "meridian/kinematics/machine_model.hpp"
+#include "meridian/kinematics/kinematics.hpp"
 
 namespace meridian::stream {
 namespace {
@@ -45,8 +46,11 @@ std::string refusal_of_tolerances(const MachineModel& model, Transition transiti
                                   double axis_rad) {
   const bool is_smooth = transition == Transition::kSmooth;
   std::string tip = refusal_of(kTipBounds, tip_mm, model.tolerances.tip_mm, is_smooth);
-  return tip.empty() ? refusal_of(kAxisBounds, axis_rad, model.tolerances.axis_rad, is_smooth)
-                     : tip;
+  if (!tip.empty()) return tip;
+  // On a pole that the tool axis misses, so much of it is used already.
+  ToleranceBounds axis = kAxisBounds;
+  axis.min += std::abs(pole_offset_rad(model));
+  return refusal_of(axis, axis_rad, model.tolerances.axis_rad, is_smooth);
 }
 
 }  // namespace meridian::stream

@@ -51,6 +51,22 @@ std::vector<ClBlock> vertical_and_tilted() {
   return blocks;
 }
 
+/// How far the true tool axis and the tip are from the programmed path, in tolerances.
+double farthest_off(const MachineModel& model, const std::vector<ClBlock>& blocks,
+                    const SmoothTrace& trace, const std::vector<PlanSample>& setpoints) {
+  const auto programmed = programmed_paths(blocks);
+  double off = 0;
+  for (const PlanSample& setpoint : setpoints) {
+    const auto k = static_cast<std::size_t>(setpoint.piece);
+    if (trace.times[k].kind != TimeKind::kMove) continue;
+    const ToolPose pose = true_pose(model, trace.paths[k].tool_length_mm, setpoint.q);
+    off = std::max(off,
+                   distance_from(programmed, trace.times[k].sequence, pose, model.tolerances.tip_mm,
+                                 model.tolerances.axis_beside_pole_rad(), off));
+  }
+  return off;
+}
+
 class MeasuredMachine : public testing::TestWithParam<std::string> {};
 
 TEST_P(MeasuredMachine, RunsWhatTheOneOfTheDrawingRuns) {
@@ -72,6 +88,7 @@ TEST_P(MeasuredMachine, RunsWhatTheOneOfTheDrawingRuns) {
       const auto setpoints = sample(model, trace, kCycle_s, 0.37, joints_of(model, blocks[0]));
       const LimitUse use = measure_limits(model, setpoints, kCycle_s);
       EXPECT_LE(std::max({use.v, use.a, use.j}), kLimit) << use.where;
+      EXPECT_LE(farthest_off(model, blocks, trace, setpoints), kLimit);
     }
   }
 }

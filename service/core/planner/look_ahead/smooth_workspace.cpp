@@ -29,7 +29,7 @@ BandTolerance SmoothPlanner::Workspace::tolerance() const noexcept {
   out.axis_rad =
       settings.axis_tolerance_rad > 0 ? settings.axis_tolerance_rad : model.tolerances.axis_rad;
   out.tip_mm = std::max(out.tip_mm, kMinTipTolerance_mm);
-  out.axis_rad = std::max(left_of(out.axis_rad), kMinAxisTolerance_rad);
+  out.axis_rad = std::max(axis_left_rad(out.axis_rad), kMinAxisTolerance_rad);
   const bool relaxed_axes = redundant_joint(model) >= 0 && model.pole_policy == PolePolicy::kRelax;
   if (relaxed_axes) out.pole = to_array(pole_direction(model));
   return out;

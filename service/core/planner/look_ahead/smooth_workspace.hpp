@@ -61,7 +61,7 @@ struct SmoothPlanner::Workspace {
   }
 
   /// What a pole that the tool axis misses leaves of an axis tolerance.
-  [[nodiscard]] double left_of(double axis_rad) const noexcept {
+  [[nodiscard]] double axis_left_rad(double axis_rad) const noexcept {
     return std::max(axis_rad - std::abs(pole_offset_rad(model)), 0.0);
   }
   [[nodiscard]] BandTolerance tolerance() const noexcept;
@@ -70,7 +70,7 @@ struct SmoothPlanner::Workspace {
     const double axis_rad = tolerance().axis_rad;
     return settings.axis_tolerance_rad > 0
                ? axis_rad
-               : std::max(axis_rad, left_of(model.tolerances.pole_axis_rad));
+               : std::max(axis_rad, axis_left_rad(model.tolerances.pole_axis_rad));
   }
 
   /// How far the blocks may be cut from where they are programmed.
@@ -80,7 +80,7 @@ struct SmoothPlanner::Workspace {
         redundant_joint(model) >= 0 && model.pole_policy == PolePolicy::kRelax;
     if (!relaxed_axes || settings.ends_exactly) return {};
     const double asked_rad = settings.axis_tolerance_rad;
-    return {0, left_of(asked_rad > 0 ? asked_rad : model.tolerances.axis_beside_pole_rad())};
+    return {0, axis_left_rad(asked_rad > 0 ? asked_rad : model.tolerances.axis_beside_pole_rad())};
   }
 
   [[nodiscard]] bool is_smooth() const noexcept {

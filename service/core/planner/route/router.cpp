@@ -201,8 +201,8 @@ PathFault Router::run_solved(PathPiece path, const Job& job, double share, PlanC
   return run(path, job, share, cursor, out);
 }
 
-void Router::pass_in_cone(const PathPiece& path, const ToolPose& end, double share, Job job,
-                          const Begin& begin, PlanCursor& cursor, Staging& out) noexcept {
+PathFault Router::pass_in_cone(const PathPiece& path, const ToolPose& end, double share, Job job,
+                               const Begin& begin, PlanCursor& cursor, Staging& out) noexcept {
   const double own_s = out.duration_since(begin.mark), own_rad = deviation_rad_;
   out.go_back(begin.mark);
   job.on_pole_rad = free_cone_rad_;
@@ -210,12 +210,12 @@ void Router::pass_in_cone(const PathPiece& path, const ToolPose& end, double sha
   const PathFault fault = pass_pole(path, end, share, job, trial, out);
   if (!is_fault(fault) && out.duration_since(begin.mark) < own_s) {
     cursor = trial;
-    return;
+    return {};
   }
   out.go_back(begin.mark);
   deviation_rad_ = own_rad;
   cursor = begin.cursor;
-  (void)run_solved(path, job, kWhole, cursor, out);  // it was staged before without a fault
+  return run_solved(path, job, kWhole, cursor, out);
 }
 
 PathFault Router::route_past_pole(const PathPiece& path, const ToolPose& end, const Job& job,
@@ -223,8 +223,8 @@ PathFault Router::route_past_pole(const PathPiece& path, const ToolPose& end, co
   const int free = redundant_joint(model_);
   const PolePassage passage = find_passage(path, find_nearest_pole(model_, cursor.pose.axis));
   const double share = passage.nearest_turn / path.axis_turn;
-  const bool is_beside = share > 0 && share < 1;
-  const bool passes = is_beside && passage.offset < job.on_pole_rad;
+  const bool is_nearest_inside = share > 0 && share < 1;
+  const bool passes = is_nearest_inside && passage.offset < job.on_pole_rad;
   const PlanCursor rest = cursor;
   const Staging::Mark mark = out.mark();
   PathFault fault = passes ? pass_pole(path, end, share, job, cursor, out)
@@ -232,13 +232,13 @@ PathFault Router::route_past_pole(const PathPiece& path, const ToolPose& end, co
   const bool is_out = fault.kind == PathFault::Kind::kTravel && fault.joint == free;
   const bool begins_in_cone = pole_distance(model_, rest.pose.axis) < free_cone_rad_;
   const bool may_pass =
-      is_beside && !passes && !(job.share_per_s > 0) && passage.offset < free_cone_rad_;
+      is_nearest_inside && !passes && !(job.share_per_s > 0) && passage.offset < free_cone_rad_;
   if (is_out && begins_in_cone) {
     out.go_back(mark);
     cursor = rest;
     fault = leave_otherwise(path, end, job, fault, cursor, out);
   } else if (begins_in_cone && may_pass && !is_fault(fault)) {
-    pass_in_cone(path, end, share, job, {rest, mark}, cursor, out);
+    fault = pass_in_cone(path, end, share, job, {rest, mark}, cursor, out);
   }
   return fault;
 }

@@ -222,8 +222,9 @@ class Router {
   };
   /// `path` begins in the free cone, is nearest to the pole at `share`, and was staged from `begin`
   /// on: stages in place of it the passage of the pole, where that is faster.
-  void pass_in_cone(const PathPiece& path, const ToolPose& end, double share, Job job,
-                    const Begin& begin, PlanCursor& cursor, Staging& out) noexcept;
+  [[nodiscard]] PathFault pass_in_cone(const PathPiece& path, const ToolPose& end, double share,
+                                       Job job, const Begin& begin, PlanCursor& cursor,
+                                       Staging& out) noexcept;
   /// `path` begins beside the pole, and the redundant joint runs out of travel on the branch in
   /// force: turn it at rest to another branch or winding, then go. `fault`: of the branch in force.
   [[nodiscard]] PathFault leave_otherwise(const PathPiece& path, const ToolPose& end,

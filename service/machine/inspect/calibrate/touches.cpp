@@ -82,7 +82,7 @@ Expected<std::vector<Touch>, std::string> read_touches(std::string_view text,
 ToolPose pose_of(const Touch& touch, MachineModel machine) {
   machine.X_MW.rotation = Eigen::Matrix3d::Identity();
   machine.X_MW.origin_mm = Vector3::Zero();
-  return forward(machine, touch.tool_length_mm, touch.joints);
+  return true_pose(machine, touch.tool_length_mm, touch.joints);
 }
 
 }  // namespace meridian::inspect

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <limits>
 
+#include "support/family_machines.hpp"
 #include "support/machines.hpp"
+#include "unit/planner/feed/straight_grid.hpp"
 
 namespace meridian::test::joint_checks {
 namespace {
@@ -129,6 +131,50 @@ TEST(JointChecks, SeeATipThatTurnsRoundOutsideOfItsBox) {
   const PathFault begin =
       check_tip_box(model, 100, {there, down, none, none}, {at, down, none, none}, 5);
   EXPECT_NEAR(begin.value, 5, 1e-9);
+}
+
+/// A ram that the head tilts: C table, X Y, A at the head, and Z on it. With A at 90 deg Z runs
+/// along Y.
+MachineModel tilting_ram() {
+  MachineModel model = bench_machine();
+  model.family = MachineFamily::kChain;
+  const std::array<ChainJoint, 5> chain{
+      ChainJoint{3, true, true, Vector3::UnitZ(), Vector3::Zero()},
+      ChainJoint{0, false, false, Vector3::UnitX(), Vector3::Zero()},
+      ChainJoint{1, false, false, Vector3::UnitY(), Vector3::Zero()},
+      ChainJoint{4, true, false, Vector3::UnitX(), Vector3(0, 0, 500)},
+      ChainJoint{2, false, false, Vector3::UnitZ(), Vector3::Zero()}};
+  model.chain = *describe_chain(chain, Vector3::UnitZ(), Vector3(0, 0, 300));
+  return model;
+}
+
+TEST(JointChecks, SlidesThatTurnIntoOnePlaneBetweenTwoPlacesJump) {
+  const MachineModel ram = tilting_ram();
+  ASSERT_TRUE(ram.chain.slides_align);
+  EXPECT_FALSE(trunnion_machine().chain.slides_align);
+  const LimitedVector none{};
+  LimitedVector a{}, b{};
+  a[4] = 1.4;
+  b[4] = 1.5;
+  b[2] = 300;
+  EXPECT_FALSE(is_fault(check_joins(ram, {a, none, none, none}, {b, none, none, none}, 0.1)));
+  b[4] = 1.6;
+  const PathFault fault = check_joins(ram, {a, none, none, none}, {b, none, none, none}, 0.1);
+  EXPECT_EQ(fault.kind, PathFault::Kind::kJump);
+  EXPECT_EQ(fault.joint, 2) << "the slide that goes farthest";
+}
+
+/// No slide is solved for on a joint move: approaches and rewinds may turn through such a place.
+TEST(JointChecks, AJointMoveTurnsThroughAPlaceWhereSlidesAlign) {
+  StraightGrid g(tilting_ram());
+  JointVector end{};
+  end[4] = 2;
+  FeedSpan span;
+  span.path = make_joint_move({}, end, 0);
+  span.length = span.path.length;
+  ASSERT_FALSE(is_fault(g.grid.push(span)));
+  EXPECT_FALSE(is_fault(g.grid.finish()));
+  EXPECT_TRUE(g.grid.is_complete());
 }
 
 }  // namespace

@@ -157,10 +157,10 @@ PathFault CellGrid::make_cells() noexcept {
   return fault_;
 }
 
-PathFault CellGrid::check_between(const JointDerivatives& a, const JointDerivatives& b,
-                                  double h) const noexcept {
+PathFault CellGrid::check_between(PathKind kind, const JointDerivatives& a,
+                                  const JointDerivatives& b, double h) const noexcept {
   PathFault fault = check_turns(model_, a.q, a.d1, b.q, b.d1, h);
-  if (!is_fault(fault)) fault = check_joins(model_, a, b, h);
+  if (!is_fault(fault) && kind != PathKind::kJoint) fault = check_joins(model_, a, b, h);
   if (has_boxes(model_) && !is_fault(fault)) {
     fault = check_boxes(model_, tool_length_mm_, a, b, h);
   }
@@ -192,8 +192,8 @@ PathFault CellGrid::make_cell(const Draft& draft) noexcept {
     if (k > 0) {
       const CellSample& last = cell.at[static_cast<std::size_t>(k - 1)];
       const double step = draft.h / FeedCell::kSteps;
-      const PathFault fault =
-          check_between({values, last.d1, last.d2, last.d3}, {here, at.d1, at.d2, at.d3}, step);
+      const PathFault fault = check_between(span.path.kind, {values, last.d1, last.d2, last.d3},
+                                            {here, at.d1, at.d2, at.d3}, step);
       if (is_fault(fault)) return fault;
     }
     values = here;

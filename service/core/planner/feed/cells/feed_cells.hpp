@@ -136,7 +136,7 @@ class CellGrid {
   static constexpr int kWaiting = kMin + kAhead + 4;
   static constexpr int kDrafts = 4096;
   /// Of a span that is graded, so that those behind it find room.
-  static constexpr int kMaxGraded = kDrafts / (kAhead + 2);
+  static constexpr int kMaxGraded = (kDrafts - kWaiting) / (kAhead + 1);
   static constexpr double kRatio = 2.5;  ///< of the lengths of neighbouring cells
 
   /// A cell to be: a piece of a span that waits.
@@ -155,7 +155,7 @@ class CellGrid {
   [[nodiscard]] int cells_of(const FeedSpan& span) const noexcept;
   void draft_cells(const FeedSpan& span) noexcept;
   /// Beside an inner singularity the time per u changes manifold inside of a span: halves the cell
-  /// at `x` as long as it takes too long where it is slowest and there are no more than `max`.
+  /// at `x` as long as it takes too long where it is slowest; there are no more than `max` then.
   void draft_graded(const FeedSpan& span, double x, double h, std::size_t max) noexcept;
   /// Halves cells longer than `ratio` times a neighbour; `left` is the one before the first.
   void halve(double left, double ratio, int rounds) noexcept;
@@ -176,8 +176,8 @@ class CellGrid {
   void draft_from_rest(Draft rest, double first, bool is_end, std::size_t to_come,
                        double& from_rest) noexcept;
   [[nodiscard]] PathFault make_cell(const Draft& draft) noexcept;
-  [[nodiscard]] PathFault check_between(const JointDerivatives& a, const JointDerivatives& b,
-                                        double h) const noexcept;
+  [[nodiscard]] PathFault check_between(PathKind kind, const JointDerivatives& a,
+                                        const JointDerivatives& b, double h) const noexcept;
   /// Finds faulty_x() in `draft` closer than between two of its samples.
   void narrow_fault(const Draft& draft) noexcept;
   /// Whether the span of `draft` ends out of reach: a joint that jumps on the way there is not why

@@ -46,11 +46,11 @@ void CellGrid::draft_cells(const FeedSpan& span) noexcept {
   const int cells = std::clamp(cells_of(span), 1, std::clamp(room, 1, kMaxPerSpan));
   const double h = span.length / cells;
   // A span that says how many cells it becomes is graded already.
-  const auto max_graded = drafts_.size() + kMaxGraded;
+  const auto max = std::min<std::size_t>(drafts_.size() + kMaxGraded, kDrafts - kWaiting);
   const bool is_graded = has_inner_singularities(model_) && span.cells == 0;
   for (int k = 0; k < cells; ++k) {
     if (is_graded) {
-      draft_graded(span, span.begin + k * h, h, max_graded);
+      draft_graded(span, span.begin + k * h, h, max - static_cast<std::size_t>(cells - 1 - k));
     } else {
       drafts_.push_back({waiting_count_ - 1, span.begin + k * h, h});
     }
@@ -60,9 +60,9 @@ void CellGrid::draft_cells(const FeedSpan& span) noexcept {
 void CellGrid::draft_graded(const FeedSpan& span, double x, double h, std::size_t max) noexcept {
   const double slowest =
       std::max({time_at(span, x), time_at(span, x + 0.5 * h), time_at(span, x + h)});
-  const bool has_room = drafts_.size() < std::min<std::size_t>(max, kDrafts - kMaxPerSpan);
+  const bool has_room = drafts_.size() + 2 <= max;
   if (slowest * h > kMaxCells * settings_.cell_s && h > kMinSplit_mm && has_room) {
-    draft_graded(span, x, 0.5 * h, max);
+    draft_graded(span, x, 0.5 * h, max - 1);
     draft_graded(span, x + 0.5 * h, 0.5 * h, max);
   } else {
     drafts_.push_back({waiting_count_ - 1, x, h});

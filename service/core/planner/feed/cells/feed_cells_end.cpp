@@ -43,7 +43,7 @@ void CellGrid::narrow_fault(const Draft& draft) noexcept {
   for (int n = 0; n < kFaultHalvings; ++n) {
     const double step = 0.5 * (faulty_x_ - good);
     if (is_good(good + step, last.joints, middle) &&
-        !is_fault(check_between(last.derivatives(), middle.derivatives(), step))) {
+        !is_fault(check_between(span.path.kind, last.derivatives(), middle.derivatives(), step))) {
       good += step;
       last = middle;
     } else {

@@ -223,7 +223,7 @@ PathFault CellTable::append(const MachineModel& model, const PathPiece& piece, d
       }
       PathFault fault = check_turns(model, at[k - 1].q, at[k - 1].d1, at[k].q, at[k].d1, h / 2);
       if (!is_fault(fault)) fault = check_travel(model, at[k].q);
-      if (!is_fault(fault))
+      if (!is_fault(fault) && piece.kind != PathKind::kJoint)
         fault = check_joins(model, at[k - 1].derivatives(), at[k].derivatives(), h / 2);
       if (is_boxed && !is_fault(fault)) {
         fault = check_boxes(model, piece.tool_length_mm, at[k - 1].derivatives(),
