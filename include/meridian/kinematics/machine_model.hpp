@@ -8,7 +8,7 @@
 
 #include "meridian/geometry/rigid_transform.hpp"
 #include "meridian/geometry/vector3.hpp"
-#include "meridian/kinematics/chain.hpp"
+#include "meridian/kinematics/chain_kinematics.hpp"
 #include "meridian/kinematics/joints.hpp"
 #include "meridian/kinematics/keep_out.hpp"
 #include "meridian/kinematics/lai.hpp"
