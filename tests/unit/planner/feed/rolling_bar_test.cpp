@@ -71,5 +71,42 @@ TEST(RollingBar, IsMadeAnewWhereLimitsBindAwayFromTheTangent) {
   }
 }
 
+/// A swing under `accel` and `jerk` of the swinging joint, with room for the rate filter.
+FeedCount swing_with_room(double accel, double jerk, double longest_s) {
+  MachineModel model = bench_machine();
+  model.joints[1].limits.acceleration = accel;
+  model.joints[1].limits.jerk = jerk;
+  FeedSettings settings;
+  settings.reserve = {1.2, 0};
+  settings.refinements = 1;
+  Rolled one(settings, model);
+  add_swing(one);
+  one.run();
+  EXPECT_LT(one.duration(), longest_s);
+  EXPECT_LE(one.use(one.pieces()).worst(), 1 + 1e-6);
+  return one.feed.count();
+}
+
+TEST(RollingBar, AWindowGoesOnAroundThePlanBeforeWhereASwingAsksForAllOfTheJerk) {
+  struct Case {
+    double accel, longest_s;  // what it takes, and a hundredth or less
+  };
+  for (const Case& c : {Case{30, 1.89}, {100, 1.18}, {600, 0.637}, {1000, 0.535}}) {
+    const FeedCount count = swing_with_room(c.accel, 6.27 * c.accel, c.longest_s);
+    EXPECT_EQ(count.kept + count.crawls, 0) << c.accel << ": every window has a plan of its own";
+  }
+}
+
+TEST(RollingBar, OnlyTheFirstResultsFarFromTheirTangentAreTriedAnewAsTheyAre) {
+  struct Case {
+    double accel, jerk, longest_s;
+  };
+  for (const Case& c : {Case{8.55, 171, 3.135}, {8.55, 53.6, 3.625}, {30, 188, 1.885}}) {
+    const FeedCount count = swing_with_room(c.accel, c.jerk, c.longest_s);
+    EXPECT_LE(count.tightened, 1) << c.accel << ": behind them cells are tightened";
+    EXPECT_LT(count.max_rounds, 100);
+  }
+}
+
 }  // namespace
 }  // namespace meridian::test::rolling_bar

@@ -196,6 +196,7 @@ TEST(RollingCommit, APathIsDoneWhenAllOfItIsCommitted) {
   one.begin();
   EXPECT_FALSE(one.feed.is_done());
   EXPECT_TRUE(one.feed.window().committed.empty());
+  EXPECT_FALSE(one.feed.window().is_from_rest) << "there is none yet";
 }
 
 }  // namespace
