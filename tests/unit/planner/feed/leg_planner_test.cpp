@@ -133,10 +133,40 @@ TEST(LegPlanner, RefusesALegThatDoesNotBeginWhereTheMachineIs) {
 TEST(LegPlanner, SaysWhereThereIsNoRoomForItsPieces) {
   Planned one(bench_machine());
   one.staged->path_count = static_cast<int>(one.staged->paths.size());
-  EXPECT_EQ(one.plan(joint_move({}, {120, 0, 0, 0, 0, 0}), {}).kind, PathFault::Kind::kTooLong);
+  const auto plan = [&one] { return one.plan(joint_move({}, {120, 0, 0, 0, 0, 0}), {}); };
+  const PathFault of_paths = plan();
   one.staged->clear(0);
   one.staged->time_count = static_cast<int>(one.staged->times.size()) - 2;
-  EXPECT_EQ(one.plan(joint_move({}, {120, 0, 0, 0, 0, 0}), {}).kind, PathFault::Kind::kTooLong);
+  const PathFault of_times = plan();
+  for (const PathFault& fault : {of_paths, of_times}) {
+    EXPECT_EQ(fault.kind, PathFault::Kind::kTooLong);
+    EXPECT_EQ(fault.joint, -1) << "no joint is at fault";
+    EXPECT_EQ(fault.value, 0);
+  }
+}
+
+/// Where jerk is low, joints change much of what they may use while acceleration still grows.
+TEST(LegPlanner, GoesOnEvenlyWhereAPhaseIsCutWhileItsAccelerationChanges) {
+  struct Case {
+    double tilt, tilt_end, turn, length, feed;
+  };
+  MachineModel model = bench_machine();
+  for (int i = 0; i < 5; ++i) {
+    model.joints[i].limits.jerk *= 0.1;
+    model.joints[i].limits.fault_jerk *= 0.1;
+  }
+  for (const Case& c : {Case{0.3, 0.2, 0.9, 200, 90}, {0.3, 0.45, 2, 20, 5}}) {
+    Planned one(model);
+    ASSERT_FALSE(is_fault(one.plan_line(pose_of({0, 0, 0}, c.tilt, 0),
+                                        pose_of({c.length, 30, 0}, c.tilt_end, c.turn), c.feed)));
+    EXPECT_LE(use_of_motion(one.model, *one.staged).worst(), 1);
+    bool is_cut = false;
+    for (int n = 1; n < one.staged->time_count; ++n) {
+      const TimePiece &before = one.staged->times[n - 1], &time = one.staged->times[n];
+      is_cut = is_cut || (time.j != 0 && time.j == before.j && time.stop_jerk != before.stop_jerk);
+    }
+    EXPECT_TRUE(is_cut);
+  }
 }
 
 TEST(LegPlanner, ShapesTheFeedWhereTheJointsDoNotFollowEvenly) {

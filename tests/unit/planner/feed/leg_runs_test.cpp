@@ -95,5 +95,25 @@ TEST(LegRuns, AreTheSameWhateverWasPlannedBefore) {
   }
 }
 
+TEST(LegRuns, LeadRoundAFullCircleToTheSideOfThePole) {
+  for (const double beside : {1e-2, 1e-4, 2e-5}) {
+    Planned one(bench_machine());
+    const ToolPose from{{5, 0, 0}, Vector3(0.3, beside, 1).normalized()};
+    const ToolPose to{{5, 0, 0}, Vector3(0, beside, 1).normalized()};
+    ClBlock circle;
+    circle.is_arc = true;
+    circle.tip_mm = to_array(to.tip);
+    circle.sweep_rad = 2 * std::numbers::pi;
+    Leg leg;
+    leg.path = make_arc(from, to, circle);
+    leg.feed_mm_per_s = 50;
+    const JointVector begin = solve(one.model, one.model.tool_length_mm, from, 0, {}).q;
+    ASSERT_FALSE(is_fault(one.plan(leg, begin))) << beside;
+    EXPECT_LE(use_of_motion(one.model, *one.staged).worst(), 1);
+    EXPECT_LE(tip_speed_of(*one.staged), 50);
+    expect_joined(one);
+  }
+}
+
 }  // namespace
 }  // namespace meridian::test::leg_runs
