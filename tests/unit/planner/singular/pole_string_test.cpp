@@ -8,6 +8,7 @@
 #include <numbers>
 #include <span>
 
+#include "service/core/planner/singular/pole/pole_time.hpp"
 #include "unit/planner/singular/walled_path.hpp"
 
 namespace meridian::test::pole_string {
@@ -141,6 +142,112 @@ TEST(PoleString, EndsOnTheWindingThatACircleAboutThePoleTurnsTheJointTo) {
     const double turn = pieces.back().free.back() - pieces.front().free.front();
     EXPECT_NEAR(std::abs(turn), std::abs(whole_rad), 1e-6);
   }
+}
+
+/// Routes behind the stretch, on every winding of both branches; on branch 0 they carry farther.
+std::vector<RouteAhead> routes_that_stay(const Walled& path) {
+  std::vector<RouteAhead> routes;
+  for (const int branch : {0, 1}) {
+    const double free = path.joints_at(path.pass.known_end, branch)[kFree];
+    for (const double turns : {-1, 0, 1}) {
+      routes.push_back({branch, free + turns * 2 * std::numbers::pi, branch == 0 ? 5 : 3});
+    }
+  }
+  return routes;
+}
+
+TEST(PoleString, StaysOnTheBranchFromWhichRoutesCarryFarther) {
+  for (const int lost : {0, 1, 2}) {
+    Walled path(0.0005);
+    path.pass.known_end = 100;
+    std::vector<RouteAhead> routes = routes_that_stay(path);
+    // Windings that nothing leads to carry farthest.
+    for (int n = 0; n < lost; ++n) routes.push_back({n, 50.0 + n, 8 + n});
+    path.pass.ahead = routes;
+    PoleString string;
+    const auto pieces = string.find(path.task, path.pass);
+    ASSERT_FALSE(pieces.empty());
+    EXPECT_FALSE(pieces.front().is_through) << "shorter, but routes behind it carry 3 blocks";
+    EXPECT_EQ(pieces.back().branch_after, 0);
+  }
+}
+
+TEST(PoleString, EndsAsFastAsTheStringTurnsWhereTheStretchGoesOn) {
+  constexpr double kRate = 0.08 * std::numbers::pi;
+  for (const double rate : {kRate, -kRate}) {
+    const auto round = [rate](double u) {
+      const double azimuth = rate * std::clamp(u - 50, 0.0, 20.0);
+      const double off = 0.01 + 0.004 * std::max({0.0, 50 - u, u - 70});
+      return Lean{off * std::cos(azimuth), off * std::sin(azimuth)};
+    };
+    Walled path(120, round, 40, 60);
+    path.pass.known_end = 100;
+    path.pass.seen_end = 80;
+    path.pass.at_end = PoleJoin::kHeld;
+    PoleString string;
+    const auto pieces = string.find(path.task, path.pass);
+    ASSERT_FALSE(pieces.empty());
+    const PoleZone& last = pieces.back();
+    EXPECT_TRUE(last.is_held);
+    const Jet<3> end = free_at(last.free, 1, last.end - last.begin);
+    EXPECT_NEAR(end.derivative(1), rate, 0.1 * kRate);
+  }
+}
+
+/// How much sooner than the exact way the pieces are at the end, by the limits at every place
+/// alone.
+double gain_s(const Found& found) {
+  const PoleTask& task = found.path.task;
+  const PolePass& pass = found.path.pass;
+  constexpr int kSteps = 40;
+  double gain = 0;
+  for (const PoleZone& zone : found.zones) {
+    const double h = zone.end - zone.begin;
+    for (int k = 0; k < kSteps; ++k) {
+      const double t = (k + 0.5) / kSteps, u = zone.begin + t * h;
+      const BandSpan& span = task.spans.span_at(u);
+      const auto pose = pose_of<Jet<3>>(span, u);
+      const auto held =
+          solve_held(task.model, pole_walls::kTool_mm, pose, free_at(zone.free, t, h));
+      const auto exact = solve(task.model, pole_walls::kTool_mm, pose, pass.branch, pass.joints);
+      gain +=
+          h / kSteps *
+          (slowness(task.model, span, pose, exact.q) - slowness(task.model, span, pose, held.q));
+    }
+  }
+  return gain;
+}
+
+TEST(PoleString, IsTakenWhereItGainsMoreThanAMillisecond) {
+  const Found one(0.0217), other(0.0238);
+  ASSERT_FALSE(one.zones.empty());
+  EXPECT_NEAR(gain_s(one), 0.0015, 0.0005);
+  EXPECT_TRUE(other.zones.empty());
+  EXPECT_TRUE(other.string.is_exact_best());
+}
+
+TEST(PoleString, LeavesToTheExactWayAStretchLongerThanItsPieces) {
+  constexpr double kSpan_mm = 8;
+  constexpr int kSpans = 400;  // pieces of 5 mm: more than a spline holds
+  const Lean lean{0.001, 0};
+  Walled path(0.001);
+  path.probes.begin(true);
+  path.programmed.begin(axis_of(lean));
+  for (int n = 0; n < kSpans; ++n) {
+    BandSpan span = leaning_span(n, lean, lean);
+    span.u0 = kSpan_mm * n;
+    span.length = kSpan_mm;
+    span.c[0] = {0.5 * span.u0, 0.5};
+    path.probes.push(span);
+    path.programmed.add(span.u0 + kSpan_mm, axis_of(lean));
+  }
+  path.pass.begin = 10;
+  path.pass.end = kSpan_mm * kSpans - 20;
+  path.pass.known_end = kSpan_mm * kSpans - 10;
+  path.pass.joints = path.joints_at(path.pass.begin, 0);
+  PoleString string;
+  EXPECT_TRUE(string.find(path.task, path.pass).empty());
+  EXPECT_TRUE(string.is_exact_best());
 }
 
 }  // namespace
