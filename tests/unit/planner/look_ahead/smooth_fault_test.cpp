@@ -101,6 +101,41 @@ TEST(SmoothFault, EndsAheadOfABlockThatLeavesTravelAndNamesIt) {
   EXPECT_NEAR((rest - kBegin.tip)[0], 50, kTip_mm) << "where the block before ends";
 }
 
+/// Publishes what has room, and reads it, until there is no more.
+void read_all(Ran& one) {
+  while (one.status == Status::kNoRoom && one.reader.advance() != nullptr) {
+    one.status = one.run.publish(one.writer);
+  }
+}
+
+TEST(SmoothFault, EndsAheadOfTheFaultyBlockAlsoBehindALongerRun) {
+  MachineModel model = bench_machine();
+  ToolPose at = kBegin;
+  at.tip[0] += 17;  // on the ninth block, behind the begin of a span
+  end_travel_at(at, kBegin, model);
+  Ran one(model);
+  one.reader.set_epoch(one.start.epoch);
+  constexpr int kShort = 120;
+  for (int n = 0; n < 2 * kShort; ++n) {
+    one.cut_straight(1, n < kShort ? -0.5 : 0.5);
+    read_all(one);
+  }
+  one.finish();
+  read_all(one);
+  ASSERT_EQ(one.status, Status::kDone);
+  one.start.joints = one.run.joints();
+  one.start.path_index = one.run.next_path_index();
+  one.start.window = one.run.next_window();
+  one.begin();
+  for (int n = 0; n < 150 && !one.run.has_fault(); ++n) {
+    one.cut_straight(1, 2);
+    read_all(one);
+  }
+  ASSERT_TRUE(one.run.has_fault());
+  EXPECT_EQ(one.run.faulty_block().sequence, 40U + 2 * kShort + 8);
+  EXPECT_NEAR((run_out(one) - kBegin.tip)[0], 16, kTip_mm) << "where the block before ends";
+}
+
 TEST(SmoothFault, NamesTheBlockThatLeavesTravelAmongShortOnes) {
   for (const int wanted : {28, 29, 30, 31, 32, 33}) {
     MachineModel model = bench_machine();
@@ -197,6 +232,7 @@ TEST(SmoothFault, WhereNoRouteLeadsPastThePoleItNamesTheBlockThereAndRestsAhead)
   ASSERT_TRUE(one.run.has_fault());
   EXPECT_EQ(one.run.fault().kind, PathFault::Kind::kBranch);
   EXPECT_EQ(one.run.faulty_block().joint, redundant_joint(model));
+  EXPECT_EQ(one.run.fault().value, 0) << "there is none that it may have";
   // Spans are held back from where a pass may begin.
   EXPECT_GE(one.last_good_end(), -kPoleReach_mm - 2);
   EXPECT_LT(one.last_good_end(), -kPoleReach_mm + 2);
