@@ -60,6 +60,21 @@ TEST(PoleCorridor, GoesAShorterWayInsideTheTolerance) {
   EXPECT_NE(handed.out.back().branch, handed.out.front().branch) << "out on the other branch";
 }
 
+TEST(PoleCorridor, UsesAllOfItsReachWhereThePathLeadsThroughThePole) {
+  Handed handed(bench_machine(), leaning_path(120, passing(0)));
+  handed.run();
+  expect_whole(handed);
+  ASSERT_TRUE(handed.is_driven());
+  double begin = 120, end = 0;
+  for (const JointSpan& span : handed.out) {
+    if (!span.is_free_driven) continue;
+    begin = std::min(begin, span.band.u0);
+    end = std::max(end, span.band.u0 + span.band.length);
+  }
+  EXPECT_LT(begin, 60 - kPoleReach_mm);
+  EXPECT_GT(end, 60 + kPoleReach_mm);
+}
+
 TEST(PoleCorridor, FollowsThePathOnItsBranchBesideAPoleThatIsFarther) {
   for (const int branch : {0, 1}) {
     Handed handed(bench_machine(), leaning_path(120, passing(0.006)), branch);
@@ -208,32 +223,55 @@ TEST(PoleCorridor, GoesOnOnAnotherWinding) {
   }
 }
 
-TEST(PoleCorridor, SaysWhetherTheRestOfAZoneFitsTravelAnotherWinding) {
-  Handed handed(bench_machine(), leaning_path(120, passing(0.0005)));
-  JointLimits& limits = handed.model.joints[3].limits;
-  handed.model.joints[3].is_endless = false;
-  limits.travel_min = -100;
-  limits.travel_max = 100;
-  handed.begin();
-  EXPECT_TRUE(handed.corridor.fits_zone(1000)) << "in no zone";
-  std::size_t n = 0;
-  while (handed.end_of_out() < 59) {
-    handed.push(n++);
-    while (handed.end_of_out() < 59) {
-      const JointSpan* span = handed.corridor.next();
-      if (span == nullptr) break;
-      handed.out.push_back(*span);
+/// A path `beside` the pole that is handed out up to `until`, in a zone. The
+/// redundant joint has ends of travel, far off.
+struct InZone : Handed {
+  InZone(double beside, double until)
+      : Handed(bench_machine(), leaning_path(120, passing(beside))) {
+    model.joints[3].is_endless = false;
+    leave_room(100);
+    begin();
+    for (std::size_t n = 0; end_of_out() < until; ++n) {
+      push(n);
+      while (end_of_out() < until) {
+        const JointSpan* span = corridor.next();
+        if (span == nullptr) break;
+        out.push_back(*span);
+      }
     }
   }
-  ASSERT_TRUE(handed.out.back().is_free_driven);
-  const double at = handed.out.back().free[5];
-  limits.travel_min = at - 9;
-  limits.travel_max = at + 9;
-  EXPECT_TRUE(handed.corridor.fits_zone(0));
-  EXPECT_TRUE(handed.corridor.fits_zone(kTurn_rad));
-  EXPECT_TRUE(handed.corridor.fits_zone(-kTurn_rad));
-  EXPECT_FALSE(handed.corridor.fits_zone(2 * kTurn_rad));
-  EXPECT_FALSE(handed.corridor.fits_zone(-2 * kTurn_rad));
+  /// The redundant joint may go no farther than `room_rad` either way from where it is.
+  void leave_room(double room_rad) {
+    const double at = out.empty() ? 0 : out.back().free[5];
+    model.joints[3].limits.travel_min = at - room_rad;
+    model.joints[3].limits.travel_max = at + room_rad;
+  }
+};
+
+TEST(PoleCorridor, AnythingFitsWhereNoZoneIsPartlyOut) {
+  Handed handed(bench_machine(), leaning_path(120, passing(0.0005)));
+  handed.begin();
+  EXPECT_TRUE(handed.corridor.fits_zone(1000));
+}
+
+TEST(PoleCorridor, SaysWhetherTheRestOfAZoneFitsTravelAnotherWinding) {
+  InZone one(0.0005, 59);
+  ASSERT_TRUE(one.out.back().is_free_driven);
+  one.leave_room(9);
+  EXPECT_TRUE(one.corridor.fits_zone(0));
+  EXPECT_TRUE(one.corridor.fits_zone(kTurn_rad));
+  EXPECT_TRUE(one.corridor.fits_zone(-kTurn_rad));
+  EXPECT_FALSE(one.corridor.fits_zone(2 * kTurn_rad));
+  EXPECT_FALSE(one.corridor.fits_zone(-2 * kTurn_rad));
+}
+
+TEST(PoleCorridor, SaysThatAZoneDoesNotFitWhoseLaterPiecesLeaveTravel) {
+  InZone one(0.0025, 50);
+  ASSERT_TRUE(one.out.back().is_free_driven);
+  one.leave_room(4);
+  EXPECT_TRUE(one.corridor.fits_zone(0));
+  one.leave_room(1.5);
+  EXPECT_FALSE(one.corridor.fits_zone(0)) << "it turns by nearly half a turn yet";
 }
 
 }  // namespace
