@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <vector>
 
 #include "service/core/planner/singular/pole/pole_time.hpp"
 #include "unit/planner/singular/walled_path.hpp"
@@ -123,6 +125,34 @@ TEST(PoleString, TurnsOverOnlyWhereTheTiltKeepsItsTravelAfterwardsToo) {
     PoleString string;
     const auto pieces = string.find(path.task, path.pass);
     EXPECT_EQ(!pieces.empty() && pieces.front().is_through, room_rad > std::abs(tilt)) << tilt;
+  }
+}
+
+TEST(PoleString, GoesOnWhereNoRouteBehindKeepsTravelForARewindMayHelp) {
+  constexpr int kTilt = 4;
+  Walled path(0.0005);
+  path.pass.known_end = 100;
+  path.model.joints[kTilt].limits.travel_min = -0.1;  // 0.16 rad at u = 100
+  path.model.joints[kTilt].limits.travel_max = 0.1;
+  PoleString string;
+  const auto pieces = string.find(path.task, path.pass);
+  ASSERT_FALSE(pieces.empty());
+  EXPECT_TRUE(pieces.front().is_through) << "the shortest";
+}
+
+TEST(PoleString, FindsTheSameWhateverItFoundBefore) {
+  constexpr std::array kBeside{0.0005, 0.2, 0.002, 0.0019, 0.01, 0.0024, 0.0005};
+  PoleString again;
+  for (const double off : {0.0, 0.0003}) {
+    for (const double beside : kBeside) {
+      Walled path(beside, Lean{0, off});
+      path.pass.known_end = 100;
+      PoleString fresh;
+      const auto wanted = fresh.find(path.task, path.pass), got = again.find(path.task, path.pass);
+      EXPECT_EQ(again.is_exact_best(), fresh.is_exact_best()) << beside;
+      ASSERT_EQ(got.size(), wanted.size()) << beside;
+      for (std::size_t n = 0; n < got.size(); ++n) EXPECT_EQ(got[n].free, wanted[n].free);
+    }
   }
 }
 
