@@ -191,7 +191,7 @@ TEST(PoleCorridor, KnowsTheSpanThatIsHeldFirst) {
 
 /// The machine is wound by a whole turn in the middle of a zone or ahead of one.
 TEST(PoleCorridor, GoesOnOnAnotherWinding) {
-  for (const double until : {15.0, 58.0}) {
+  for (const double until : {15.0, 39.2, 58.0}) {
     Handed handed(bench_machine(), leaning_path(120, passing(0.0005)));
     handed.begin();
     std::size_t n = 0;
