@@ -22,6 +22,8 @@ constexpr std::array kDialects = std::to_array<DialectTraits>({
     {Dialect::kHyperMill, "hypermill", "hyperMILL APT", kAsk, false, false, kNumbersAsk},
     {Dialect::kMakino, "makino", "Makino FF CLDATA", kAsk, false, false, kNumbersAsk},
     {Dialect::kHsm, "hsm", "HSM APT", kAsk, false, false, CycleNumbers::kDepthUnitFeed},
+    {Dialect::kFusion, "fusion", "Autodesk ISO 4343 APT", kAsk, false, false,
+     CycleNumbers::kFromBottom},
     {Dialect::kIso, "iso", "ISO 4343 APT", kAsk, false, false, kNumbersAsk},
     {Dialect::kFanuc, "fanuc", "NC program, Fanuc and ISO words", kStays, false, true, kNumbersAsk},
     {Dialect::kSiemens, "siemens", "NC program, Siemens words", kStays, false, true, kNumbersAsk},

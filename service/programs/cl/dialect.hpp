@@ -19,7 +19,8 @@ enum class Dialect : std::uint8_t {
   kMastercam,
   kHyperMill,
   kMakino,
-  kHsm,
+  kHsm,     ///< the post Generative Machining APT
+  kFusion,  ///< Autodesk's post Common ISO 4343 APT
   kIso,
   kFanuc,      ///< no CL file: an NC program of ISO and Fanuc words
   kSiemens,    ///< no CL file: an NC program of Siemens words
@@ -42,8 +43,9 @@ enum class MissingAxis : std::uint8_t {
 
 /// How the numbers of a canned cycle are meant where no keyword stands before them.
 enum class CycleNumbers : std::uint8_t {
-  kAsk,           ///< as the table of a post-processor says: refused
-  kDepthUnitFeed  ///< depth, unit, feed, clearance above the bottom; RAPTO: down from there
+  kAsk,            ///< as the table of a post-processor says: refused
+  kDepthUnitFeed,  ///< depth, unit, feed, clearance above the bottom; RAPTO: down from there
+  kFromBottom      ///< the same of points that are bottoms, and the clearance is a Z
 };
 
 /// One row of the table of dialects.

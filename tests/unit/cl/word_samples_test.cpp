@@ -31,7 +31,8 @@ constexpr std::array kSamples = std::to_array<Sample>({
     {"mastercam.apt", Dialect::kUnknown, "Mastercam APT", {0, 10, 0}, 3, 1, 0},
     {"hypermill.apt", Dialect::kUnknown, "hyperMILL APT", {10, 0, 20}, 4, 0, 0},
     {"makino.cldata", Dialect::kUnknown, "Makino FF CLDATA", {20, 0, 0}, 3, 1, 0},
-    {"hsm.apt", Dialect::kHsm, "HSM APT", {5, 5, 20}, 5, 1, 1},
+    {"hsm.apt", Dialect::kHsm, "HSM APT", {5, 5, 20}, 6, 1, 1},
+    {"fusion.apt", Dialect::kFusion, "Autodesk ISO 4343 APT", {5, 5, 15}, 2, 0, 1},
     {"iso.apt", Dialect::kIso, "ISO 4343 APT", {0, 0, 50}, 6, 0, 1},
 });
 

@@ -103,6 +103,11 @@ Outcome set_levels(const CycleWords& words, CycleStatement& out) {
   }
   if (!words.retract_to.empty()) retract = words.retract_to[0];
   if (!is_iso && !words.return_to.empty()) retract = words.return_to[0];
+  if (!is_iso && !words.clear.empty() && !retract && !words.returns_to_before) {
+    return refuse(
+        "CYCLE gives CLEAR beside FEDTO: a level above the hole or a Z, as the writer means",
+        "output RTRCTO, or let the CAM system write the cycle out as motion");
+  }
   if (words.returns_to_before) cycle.returns = CycleReturn::kToBefore;
   if (!(cycle.rapid_level >= 0 && cycle.rapid_level <= kLargest)) {
     return refuse("CYCLE: the rapid level lies " + short_number(cycle.rapid_level) +
@@ -151,23 +156,30 @@ Outcome set_kind(const CycleWords& words, const HoleType& type, HoleCycle& cycle
   return {};
 }
 
-/// Depth, feed and clearance above the bottom by their place, as HSM posts write them.
-Outcome spread_positions(CycleWords& words, const DialectFinder& dialect) {
+/// Depth, feed and clearance by their place, as HSM posts write them.
+Outcome spread_positions(CycleWords& words, const DialectFinder& dialect, HoleCycle& cycle) {
   if (words.positions.empty()) return {};
-  if (dialect.traits().cycle_numbers != CycleNumbers::kDepthUnitFeed) {
+  const CycleNumbers meaning = dialect.traits().cycle_numbers;
+  if (meaning == CycleNumbers::kAsk) {
     return refuse(
         "CYCLE gives numbers by their place: what they mean stands in the table of a "
         "post-processor",
-        "let the CAM system write keywords (FEDTO, RAPTO) or motion; --dialect hsm reads them as "
-        "depth, feed, clearance above the bottom");
+        "let the CAM system write keywords (FEDTO, RAPTO) or motion; depth, feed and clearance as "
+        "the posts of HSM write them are read with --dialect fusion (its ISO 4343 post: points are "
+        "bottoms of holes) or hsm (Generative Machining: tops)");
   }
   if (words.positions.size() != 2 || words.feeds.size() != 1) {
     return refuse("CYCLE needs depth, unit, feed and clearance in this order");
   }
   const double depth = words.positions[0], clearance = words.positions[1];
   words.depth = {depth};
-  words.clear = {clearance - depth};
   words.positions.clear();
+  if (meaning == CycleNumbers::kDepthUnitFeed) {
+    words.clear = {clearance - depth};
+  } else {
+    cycle.clearance_z = clearance;
+    if (!words.rapid_to.empty()) cycle.rapid_below = words.rapid_to[0];
+  }
   return {};
 }
 
@@ -204,7 +216,7 @@ Expected<CycleStatement, Refusal> read_cycle(const Statement& s, const DialectFi
   }
   auto words = read_cycle_words(s);
   if (!words) return error(words.error());
-  if (auto done = spread_positions(*words, dialect); !done) return error(done.error());
+  if (auto done = spread_positions(*words, dialect, out.cycle); !done) return error(done.error());
   if (words->feeds.size() > 1) return refuse("CYCLE gives several feeds");
   if (!words->feeds.empty()) out.cycle.feed = words->feeds[0];
   out.cycle.dwell_s = words->dwell_s;
@@ -212,7 +224,9 @@ Expected<CycleStatement, Refusal> read_cycle(const Statement& s, const DialectFi
   if (auto done = set_kind(*words, *type, out.cycle); !done) return error(done.error());
   if (auto done = set_depth(*words, *type, out, dialect.traits()); !done)
     return error(done.error());
-  if (auto done = set_levels(*words, out); !done) return error(done.error());
+  if (!out.cycle.clearance_z) {
+    if (auto done = set_levels(*words, out); !done) return error(done.error());
+  }
   if (auto done = set_pecks(*words, out.cycle); !done) return error(done.error());
   return out;
 }

@@ -47,6 +47,10 @@ struct HoleCycle {
   bool dwells_at_pecks = true;  ///< after each peck; else at the bottom alone
   WrittenFeed feed;             ///< kNone: the one in force
   WrittenFeed feed_out;         ///< kNone: as `kind` says, at rapid or at `feed`
+  /// Where the points are bottoms: the Z to which it retracts. Then its levels are those of the
+  /// last hole.
+  std::optional<double> clearance_z;
+  double rapid_below = 0;  ///< of clearance_z: how far below it the rapid level lies
 };
 
 /// One row for every type of cycle: what it does, or why it is refused.

@@ -12,6 +12,7 @@ namespace meridian::cl {
 namespace {
 
 constexpr double kLevelTolerance_mm = 1e-3;  // the last digit that CAM systems write
+constexpr double kSameDirection = 1e-9;      // of unit vectors
 
 Outcome rapid_to(Modal& m, const Vector3& tip, const Vector3& axis, std::uint32_t line) {
   if ((tip - m.path.tip()).norm() <= kMinMove_mm && axis == m.path.axis()) return {};
@@ -30,15 +31,43 @@ double retract_level(const Modal& m, const Vector3& top, const Vector3& axis) {
 }
 
 /// A wrong reading of a cycle's levels shows at the first hole: CAM systems bring the tool to the
-/// retract level over it before the cycle begins.
-void check_first_level(Modal& m, const Vector3& top, double retract_mm, std::uint32_t line) {
-  if (m.dialect.dialect() != Dialect::kSolidWorks || m.holes_of_cycle > 0) return;
+/// retract level over it before the cycle begins. HSM posts of two kinds write alike, and what is
+/// the top of a hole for one is its bottom for the other.
+Outcome check_first_level(Modal& m, const Vector3& top, double retract_mm, std::uint32_t line) {
+  const bool is_hsm = m.dialect.dialect() == Dialect::kHsm;
+  const bool is_shown = is_hsm || m.dialect.dialect() == Dialect::kSolidWorks;
+  if (!is_shown || m.holes_of_cycle > 0) return {};
   const double level = m.axis.in_w.dot(m.path.tip() - top);
-  if (std::abs(level - retract_mm) <= kLevelTolerance_mm) return;
-  m.remarks.warn("first level", line, [&] {
-    return "the tool stands " + short_number(level) + " mm above the first hole, not at the " +
-           short_number(retract_mm) + " mm to which the cycle retracts: are its levels right?";
-  });
+  if (std::abs(level - retract_mm) <= kLevelTolerance_mm) return {};
+  const std::string text = "the tool stands " + short_number(level) +
+                           " mm above the first hole, not at the " + short_number(retract_mm) +
+                           " mm to which the cycle retracts";
+  if (is_hsm && m.path.position() == BlockPath::Position::kReached) {
+    return refuse(text + ", as this dialect has it",
+                  "--dialect fusion where the points are the bottoms of the holes");
+  }
+  m.remarks.warn("first level", line, [&] { return text + ": are its levels right?"; });
+  return {};
+}
+
+/// Autodesk's ISO 4343 post gives the bottom of every hole, and the clearance as a Z.
+Outcome count_from_top(Modal& m, Vector3& point) {
+  HoleCycle& cycle = *m.cycle;
+  if (!cycle.clearance_z) return {};
+  const Vector3& axis = m.axis.in_w;
+  if ((axis - m.frames.direction(Vector3::UnitZ())).norm() > kSameDirection) {
+    return refuse(
+        "a hole along a tilted axis, whose clearance is a Z of a plane that the file lacks",
+        "let the CAM system write the holes out as motion");
+  }
+  const double to_mm = m.units.to_mm;
+  const Vector3 clearance = m.frames.point(Vector3(0, 0, *cycle.clearance_z * to_mm));
+  point += cycle.depth * to_mm * axis;
+  cycle.retract_level = axis.dot(clearance - point) / to_mm;
+  cycle.rapid_level = cycle.retract_level - cycle.rapid_below;
+  if (cycle.rapid_level * to_mm >= -kLevelTolerance_mm) return {};
+  return refuse("CYCLE: the rapid level lies " + short_number(cycle.rapid_level) +
+                " above the top of the hole: inside the part");
 }
 
 /// Over the hole, at the higher of the level where the tool is and the retract level.
@@ -171,11 +200,13 @@ Outcome read_cycle_word(Modal& m, const Statement& s) {
   return {};
 }
 
-Outcome run_hole(Modal& m, const Vector3& top, std::uint32_t line) {
+Outcome run_hole(Modal& m, const Vector3& point, std::uint32_t line) {
   if (m.cycle->kind == HoleKind::kRefused) {
     m.path.lose_position();
     return {};
   }
+  Vector3 top = point;
+  if (auto done = count_from_top(m, top); !done) return done;
   const auto feeds = feeds_of_cycle(m, line);
   if (!feeds) return tl::make_unexpected(feeds.error());
   if (m.cycle->dwell_revolutions > 0 && !m.spindle.turns()) {
@@ -187,7 +218,7 @@ Outcome run_hole(Modal& m, const Vector3& top, std::uint32_t line) {
                   "write SPINDL before it");
   }
   const double retract_mm = retract_level(m, top, m.axis.in_w);
-  check_first_level(m, top, retract_mm, line);
+  if (auto done = check_first_level(m, top, retract_mm, line); !done) return done;
   if (auto done = go_over(m, top, retract_mm, line); !done) return done;
   for (const HoleMove& move : moves_of(*m.cycle, {retract_mm, m.units.to_mm})) {
     if (auto done = run_move(m, move, top, *feeds, line); !done) return done;

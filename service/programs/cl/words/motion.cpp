@@ -117,7 +117,8 @@ Outcome axis_left_out(Modal& m, std::uint32_t line) {
   return refuse(
       "a point without a tool axis after a tilted one: whether the axis stays, is +z, or that of "
       "the last CSYS is the CAM system's to say, and the file does not show which wrote it",
-      "--dialect nx, catia, mastercam, hypermill or iso: it stays; creo: +z; solidworks: that of "
+      "--dialect nx, catia, mastercam, hypermill, fusion or iso: it stays; creo: +z; solidworks: "
+      "that of "
       "the last CSYS",
       "axis left out");
 }

@@ -46,7 +46,7 @@ void put_copy_in_force(Modal& m, const Frame& before);
 /// arcs.cpp: the arc whose end a list of points has still to give.
 [[nodiscard]] Outcome end_listed_arc(Modal& m);
 
-/// cycles.cpp: the hole of the active cycle at `top`, along the modal axis.
-[[nodiscard]] Outcome run_hole(Modal& m, const Vector3& top, std::uint32_t line);
+/// cycles.cpp: the hole of the active cycle at `point`, along the modal axis.
+[[nodiscard]] Outcome run_hole(Modal& m, const Vector3& point, std::uint32_t line);
 
 }  // namespace meridian::cl
