@@ -182,6 +182,23 @@ TEST(Circle, OfMovarcTurnsByTheSignOfItsSweep) {
             std::string::npos);
 }
 
+TEST(ReadArc, MovarcByKeywordsTurnsRightHandedAboutItsAxis) {
+  const auto read = read_body(
+      "GOTO/10,0,0\nARCSLP/ 2\nMOVARC/ CENTER, 0, 0, 0, AXIS, 0, 0, -1, RADIUS, 10\n"
+      "GOTO/ 0, 10, 2\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_NEAR(read.motion().at(1).sweep_rad, 1.5 * std::numbers::pi, 1e-12);
+  EXPECT_EQ(read.motion()[1].normal[2], -1);
+  for (const char* const form :
+       {"MOVARC/ CENTER, 0, 0, 0, AXIS, 0, 0, 1, RADIUS, 10, TIMES, 2",
+        "MOVARC/ CENTER, 0, 0, 0, RADIUS, 10, AXIS, 0, 0, 1", "MOVARC/ 0, 0, 0, 0, 0, 1, 10"}) {
+    EXPECT_NE(
+        read_body(std::string("GOTO/10,0,0\n") + form + "\nGOTO/0,10,0\n").error.find("MOVARC"),
+        std::string::npos)
+        << form;
+  }
+}
+
 /// Creo writes the points of an arc as a list: only the last one ends it.
 TEST(Circle, OfCreoEndsAtTheLastPointOfItsList) {
   const auto read = read_body(

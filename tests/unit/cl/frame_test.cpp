@@ -38,6 +38,30 @@ TEST(Frames, ThatChangeAreGivenInTheFirst) {
   EXPECT_EQ(read.summary.frame_changes, 2U);
 }
 
+TEST(Frames, OfMcsAreThreeAxesAndThenTheirOrigin) {
+  // The second one stands up: its z is -y, its origin at (5, 6, 7).
+  const auto read = read_body(
+      "MULTAX/OFF\nMCS/1, 0, 0, $\n0, 1, 0, $\n0, 0, 1, $\n0, 0, 0\nGOTO/1,2,3\n"
+      "MULTAX/OFF\nMCS/1, 0, 0, $\n0, 0, 1, $\n0, -1, 0, $\n5, 6, 7\nGOTO/1,2,3\n");
+  ASSERT_EQ(read.error, "");
+  expect_near(read.motion().at(0).tip_mm, {1, 2, 3});
+  expect_near(read.motion().at(1).tip_mm, {6, 3, 9});
+  expect_near(read.motion()[1].axis, {0, -1, 0});
+  EXPECT_NE(read_body("MCS/1,0,0, 0,1,0, 0,0,-1, 0,0,0\nGOTO/1,2,3\n").error, "");
+}
+
+TEST(Frames, OfMcsysLieInOneWorkOffset) {
+  const std::string first = "MCSYS/ NUM, 1, POINT, 0, 0, 0, VECTOR, 1, 0, 0, VECTOR, 0, 1, 0\n";
+  const std::string second = "POINT, 0, 0, 9, VECTOR, 0, 1, 0, VECTOR, -1, 0, 0\nGOTO/ 1, 2, 3\n";
+  const auto read = read_body(first + "GOTO/ 1, 2, 3\nMCSYS/ NUM, 1, " + second);
+  ASSERT_EQ(read.error, "");
+  expect_near(read.motion().at(1).tip_mm, {-2, 1, 12});
+  const auto other = read_body(first + "GOTO/ 1, 2, 3\nMCSYS/ NUM, 2, " + second);
+  EXPECT_NE(other.error.find("part.apt:5: MCSYS/NUM,2 after NUM,1"), std::string::npos)
+      << other.error;
+  EXPECT_NE(read_body("MCSYS/ NUM, 1, POINT, 0, 0, 0\nGOTO/1,2,3\n").error, "");
+}
+
 TEST(Frames, TurnArcsWithThem) {
   const auto m =
       read_body(

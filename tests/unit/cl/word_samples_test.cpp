@@ -33,6 +33,8 @@ constexpr std::array kSamples = std::to_array<Sample>({
     {"makino.cldata", Dialect::kUnknown, "Makino FF CLDATA", {20, 0, 0}, 3, 1, 0},
     {"hsm.apt", Dialect::kHsm, "HSM APT", {5, 5, 20}, 6, 1, 1},
     {"fusion.apt", Dialect::kFusion, "Autodesk ISO 4343 APT", {5, 5, 15}, 2, 0, 1},
+    {"mfgsuite.apt", Dialect::kIso, "ISO 4343 APT", {10, 10, 0}, 3, 1, 0},
+    {"camplete.apt", Dialect::kIso, "ISO 4343 APT", {10, 10, 0}, 3, 1, 0},
     {"iso.apt", Dialect::kIso, "ISO 4343 APT", {0, 0, 50}, 6, 0, 1},
 });
 

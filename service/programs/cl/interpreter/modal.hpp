@@ -125,6 +125,7 @@ struct Modal {
   std::optional<Vector3> before_cycle;                 ///< where the tool was
   std::uint64_t holes_of_cycle = 0;
   std::optional<std::uint32_t> tool;
+  std::optional<double> work_offset;  ///< of the MCSYS words
   RotaryWord rotary;
   CutcomPath cutcom_path = CutcomPath::kNotReported;
   Structure structure;

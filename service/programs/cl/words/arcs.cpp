@@ -125,6 +125,18 @@ Outcome check_sweep(const Modal& m, const PendingArc& arc, const Vector3& centre
                    "output an end that the sweep leads to, or points");
 }
 
+/// The sweep of a MOVARC in degrees: below zero it turns left-handed.
+Outcome set_sweep(PendingArc& arc, double sweep_deg) {
+  if (!(sweep_deg != 0 && std::abs(sweep_deg) <= 360)) {
+    return refuse("MOVARC: a sweep of " + short_number(sweep_deg) + " deg makes no arc");
+  }
+  arc.sweep_rad = units::rad_from_deg(sweep_deg);
+  if (sweep_deg < 0) {
+    for (std::size_t i = 3; i < 6; ++i) arc.centre_normal[i] = -arc.centre_normal[i];
+  }
+  return {};
+}
+
 }  // namespace
 
 Outcome read_circle(Modal& m, const Statement& s) {
@@ -155,26 +167,31 @@ Outcome read_forward(Modal& m, const Statement& s) {
   return {};
 }
 
-/// MOVARC/x,y,z,i,j,k,r,ANGLE,a and the GOTO behind it.
+/// MOVARC/x,y,z,i,j,k,r,ANGLE,a or MOVARC/CENTER,x,y,z,AXIS,i,j,k,RADIUS,r, and the GOTO behind it.
 Outcome read_move_arc(Modal& m, const Statement& s) {
   if (m.curve.index() != 0) return refuse_second(m);
   if (m.cycle) return refuse("an arc inside a cycle", "write CYCLE/OFF before it");
-  constexpr std::size_t kVector = 7;
-  const bool is_whole = s.argument_count == 9 && s.number_count == 8 && s.arguments[8].is_number &&
-                        is_word(s.arguments[kVector].text, "ANGLE");
-  if (!is_whole) return refuse("MOVARC needs 7 numbers, ANGLE and the sweep in degrees");
+  const auto has = [&s](std::size_t at, std::string_view word) {
+    return at < s.argument_count && is_word(s.arguments[at].text, word);
+  };
+  const bool has_keys = s.argument_count == 10 && s.number_count == 7 && has(0, "CENTER") &&
+                        has(4, "AXIS") && has(8, "RADIUS");
+  const bool has_sweep = s.argument_count == 9 && s.number_count == 8 && has(7, "ANGLE");
+  if (!has_keys && !has_sweep) {
+    return refuse(
+        "MOVARC needs 7 numbers, ANGLE and the sweep in degrees, or CENTER, AXIS, RADIUS");
+  }
   PendingArc arc;
   arc.line = s.line;
-  for (std::size_t i = 0; i < 6; ++i) arc.centre_normal[i] = s.arguments[i].number;
-  arc.radius = s.arguments[6].number;
-  const double sweep_deg = s.arguments[8].number;
-  if (!(arc.radius >= 0)) return refuse("MOVARC has a negative radius");
-  if (!(sweep_deg != 0 && std::abs(sweep_deg) <= 360)) {
-    return refuse("MOVARC: a sweep of " + short_number(sweep_deg) + " deg makes no arc");
+  std::array<double, 7> v{};
+  for (std::size_t i = 0, at = 0; at < s.argument_count && i < v.size(); ++at) {
+    if (s.arguments[at].is_number) v[i++] = s.arguments[at].number;
   }
-  arc.sweep_rad = units::rad_from_deg(sweep_deg);
-  if (sweep_deg < 0) {
-    for (std::size_t i = 3; i < 6; ++i) arc.centre_normal[i] = -arc.centre_normal[i];
+  std::copy_n(v.begin(), 6, arc.centre_normal.begin());
+  arc.radius = v[6];
+  if (!(arc.radius >= 0)) return refuse("MOVARC has a negative radius");
+  if (has_sweep) {
+    if (auto done = set_sweep(arc, s.arguments[8].number); !done) return done;
   }
   m.curve = arc;
   return {};

@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "meridian/units.hpp"
 #include "service/programs/cl/text/written_text.hpp"
@@ -47,6 +48,46 @@ Outcome read_msys(Modal& m, const Statement& s) {
   const auto frame = frame_from_axes(std::span<const double, 9>(v->data(), 9));
   if (!frame) return refuse(std::string("MSYS") + kNoFrame);
   if (auto done = refuse_inside_curve(m, s); !done) return done;
+  m.frames.set_frame(*frame, FrameChain::Kind::kMsys);
+  return {};
+}
+
+/// MCS of CAMplete files: the axes x, y and z of the frame, and then its origin.
+Outcome read_mcs(Modal& m, const Statement& s) {
+  const auto v = numbers_of(s, 12);
+  if (!v) return tl::make_unexpected(v.error());
+  std::array<double, 12> rows{};
+  for (std::size_t i = 0; i < 12; ++i) rows[4 * (i % 3) + i / 3] = (*v)[i];
+  const auto frame = frame_from_rows(rows);
+  if (!frame) return refuse(std::string("MCS") + kNoFrame);
+  if (auto done = refuse_inside_curve(m, s); !done) return done;
+  m.frames.set_frame(*frame, FrameChain::Kind::kMsys);
+  return {};
+}
+
+/// MCSYS/NUM,n,POINT,x,y,z,VECTOR,i,j,k,VECTOR,i,j,k of MfgSuite: a work offset, and the origin and
+/// the axes x and y in it.
+Outcome read_mcsys(Modal& m, const Statement& s) {
+  constexpr std::array<std::pair<std::size_t, std::string_view>, 4> kWords = {
+      {{0, "NUM"}, {2, "POINT"}, {6, "VECTOR"}, {10, "VECTOR"}}};
+  const bool is_whole = s.argument_count == 14 && s.number_count == 10 &&
+                        std::all_of(kWords.begin(), kWords.end(), [&s](const auto& word) {
+                          return is_word(s.arguments[word.first].text, word.second);
+                        });
+  if (!is_whole) return refuse("MCSYS needs NUM, POINT and two times VECTOR with their numbers");
+  const double offset = s.arguments[1].number;
+  if (m.work_offset.value_or(offset) != offset) {
+    return refuse("MCSYS/NUM," + short_number(offset) + " after NUM," +
+                      short_number(*m.work_offset) +
+                      ": how far the two work offsets are apart is known to the control alone",
+                  "output all operations in one work offset");
+  }
+  std::array<double, 9> v{};
+  for (std::size_t i = 0; i < 9; ++i) v[i] = s.arguments[3 + i + i / 3].number;
+  const auto frame = frame_from_axes(v);
+  if (!frame) return refuse(std::string("MCSYS") + kNoFrame);
+  if (auto done = refuse_inside_curve(m, s); !done) return done;
+  m.work_offset = offset;
   m.frames.set_frame(*frame, FrameChain::Kind::kMsys);
   return {};
 }
@@ -161,9 +202,10 @@ Outcome read_mode(Modal& m, const Statement& s) {
     return refuse("incremental coordinates", "output absolute coordinates");
   }
   for (const char* const word : {"TURN", "TOOL", "AXIS"}) {
-    if (s.has_word(word) && s.major == "MODE") {
-      return refuse("MODE/" + std::string(word) + " changes what the points after it mean",
-                    "output points of the tool tip in the part");
+    if (s.has_word(word) && s.major != "SET") {
+      return refuse(
+          std::string(s.major) + "/" + std::string(word) + " changes what the points after it mean",
+          "output points of the tool tip in the part");
     }
   }
   return skip(m, s);

@@ -46,6 +46,8 @@ Outcome read_transition(Modal& m, const Statement& s);
 
 // frames.cpp
 Outcome read_msys(Modal& m, const Statement& s);
+Outcome read_mcs(Modal& m, const Statement& s);
+Outcome read_mcsys(Modal& m, const Statement& s);
 Outcome read_csys(Modal& m, const Statement& s);
 Outcome read_trntyp(Modal& m, const Statement& s);
 Outcome read_origin(Modal& m, const Statement& s);
