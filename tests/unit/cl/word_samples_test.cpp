@@ -25,7 +25,7 @@ struct Sample {
 
 constexpr std::array kSamples = std::to_array<Sample>({
     {"nx.cls", Dialect::kUnknown, "NX CLSF", {5, 5, 10}, 5, 3, 1},
-    {"catia.apt", Dialect::kUnknown, "CATIA APT", {0, 0, 100}, 4, 2, 1},
+    {"catia.apt", Dialect::kUnknown, "CATIA APT", {0, 0, 100}, 4, 3, 1},
     {"creo.ncl", Dialect::kUnknown, "Creo NCL", {5, 5, 3}, 6, 1, 1},
     {"solidworks.apt", Dialect::kUnknown, "SolidWorks CAM APT", {5, 5, 20}, 6, 1, 1},
     {"mastercam.apt", Dialect::kUnknown, "Mastercam APT", {0, 10, 0}, 3, 1, 0},

@@ -27,6 +27,9 @@ Outcome read_forward(Modal& m, const Statement& s);
 Outcome read_tool_on(Modal& m, const Statement& s);
 Outcome read_move_arc(Modal& m, const Statement& s);
 
+// helices.cpp
+Outcome read_helix(Modal& m, const Statement& s);
+
 // splines.cpp
 Outcome read_spline(Modal& m, const Statement& s);
 Outcome read_knots(Modal& m, const Statement& s);
