@@ -16,6 +16,9 @@ struct Word {
     kModal,
     kAbsolute,     ///< AC of Siemens
     kIncremental,  ///< IC of Siemens, IX of Klartext
+    kShortest,     ///< DC of Siemens: to this angle within a turn, through less than half a turn
+    kUpwards,      ///< ACP of Siemens: to this angle within a turn, in the positive sense
+    kDownwards,    ///< ACN of Siemens: the same in the negative sense
     kOfPlane       ///< Q120 to Q122 of Klartext: what the tilted plane asks of a rotary axis
   };
 

@@ -33,6 +33,35 @@ TEST(SiemensProgram, KnowsItsWaysOfWritingNumbers) {
   EXPECT_EQ(tip(motion[2]), Vector3(4.5, 1, 9));
 }
 
+/// How far from its begin the tool axis gets on the last line, deg, and the number of its blocks.
+double largest_turn_deg(const ReadText& read) {
+  double max = 0;
+  for (const ClBlock& block : read.motion()) {
+    if (block.kind != BlockKind::kCut) continue;
+    const double cosine = axis(block).dot(axis(read.motion().at(0)));
+    max = std::max(max, units::deg_from_rad(std::acos(std::clamp(cosine, -1.0, 1.0))));
+  }
+  return max;
+}
+
+TEST(SiemensProgram, TurnsRotaryAxesWithinATurnAsItsWordsSay) {
+  // A stays at 30, C goes from 350 to 10: by 20 deg, or the other sense by 340.
+  const std::string head = "G0 A30 C350\nTRAORI\nORIAXES\nG0 X0 Y0 Z50 A30 C350\n";
+  const auto options = siemens(on(shipped("trunnion-ac")));
+  for (const auto& [words, is_short] :
+       {std::pair{"C=DC(10)", true}, {"C=ACP(10)", true}, {"C=ACN(10)", false}, {"C10", false}}) {
+    const ReadText read = read_siemens(head + "G1 X90 " + words + "\n", options);
+    ASSERT_EQ(read.error, "") << words;
+    EXPECT_EQ(largest_turn_deg(read) < 11, is_short) << words << " " << largest_turn_deg(read);
+    const double turn = units::rad_from_deg(10), tilt = units::rad_from_deg(30);
+    const ClBlock& last = read.motion().back();
+    EXPECT_NEAR(axis(last)[2], std::cos(tilt), kTiny) << words;
+    EXPECT_NEAR(std::abs(axis(last)[0]), std::sin(tilt) * std::sin(turn), kTiny) << words;
+  }
+  EXPECT_NE(read_siemens("G0 X=DC(5) Y0 Z0\n", options).error.find("an axis that does not turn"),
+            std::string::npos);
+}
+
 TEST(SiemensProgram, TurnsArcsByRadiusCentreAndTurns) {
   const ReadText read = read_siemens(
       "G0 X10 Y0 Z0\nG3 X0 Y10 CR=10\nG3 X-10 Y0 I=AC(0) J=AC(0)\nG3 X0 Y-10 Z-3 I10 J0 TURN=2\n");

@@ -23,6 +23,19 @@ constexpr std::array<std::string_view, 12> kSettings = {"ACC",  "ADIS",  "ADISPO
                                                         "CTOL", "FGREF", "FIFOLEN", "JERKLIM",
                                                         "LIMS", "OTOL",  "STOLF",   "VELOLIM"};
 
+/// X=AC(10), C=DC(350): how a number is meant in this block alone.
+struct DistanceName {
+  std::string_view name;
+  Word::DistanceMode mode;
+  bool is_of_rotary;
+};
+constexpr std::array<DistanceName, 5> kDistances = {
+    {{"AC", Word::DistanceMode::kAbsolute, false},
+     {"IC", Word::DistanceMode::kIncremental, false},
+     {"DC", Word::DistanceMode::kShortest, true},
+     {"ACP", Word::DistanceMode::kUpwards, true},
+     {"ACN", Word::DistanceMode::kDownwards, true}}};
+
 bool is_setting(std::string_view name) {
   return std::find(kSettings.begin(), kSettings.end(), name) != kSettings.end();
 }
@@ -223,12 +236,14 @@ class SiemensCutter {
     const char first = rest_.empty() ? ' ' : rest_[has_sign ? 1 : 0];
     if (!cl::is_letter(first) && first != '_') return cut_number(word);
     const std::string_view how = next_name();
-    if (how != "AC" && how != "IC") return cut_named_number(word);
+    const auto* const row = std::find_if(kDistances.begin(), kDistances.end(),
+                                         [how](const DistanceName& d) { return d.name == how; });
+    if (row == kDistances.end()) return cut_named_number(word);
     (void)take_while(is_name_sign);
-    if (how == "AC") {
-      word.distance_mode = Word::DistanceMode::kAbsolute;
-    } else {
-      word.distance_mode = Word::DistanceMode::kIncremental;
+    word.distance_mode = row->mode;
+    if (row->is_of_rotary && !word.may_be_rotary()) {
+      return refuse(std::string(how) + " for an axis that does not turn",
+                    "output AC, or the number alone");
     }
     if (!take('(')) return refuse(std::string(how) + " without its bracket");
     skip_blanks();

@@ -50,6 +50,22 @@ bool is_relative(const State& s, const Word& word) {
              : word.distance_mode == Word::DistanceMode::kIncremental;
 }
 
+/// Where a rotary word leads from `before`, deg.
+double rotary_end(const Word& word, double before, bool is_incremental) {
+  using enum Word::DistanceMode;
+  const double turn = std::remainder(word.number - before, 360.0);
+  switch (word.distance_mode) {
+    case kShortest:
+      return before + turn;
+    case kUpwards:
+      return before + (turn < 0 ? turn + 360 : turn);
+    case kDownwards:
+      return before + (turn > 0 ? turn - 360 : turn);
+    default:
+      return is_incremental ? before + word.number : word.number;
+  }
+}
+
 cl::Outcome take_tip(State& s, const Line& line, Target& to) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Word* const word = line.find(kTip[k]);
@@ -86,7 +102,7 @@ cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
       return refuse("G91, but where " + address + " stands is not known here",
                     "write G90 and where it goes before it");
     }
-    const double deg = is_incremental ? *before + word.number : word.number;
+    const double deg = rotary_end(word, before.value_or(0), is_incremental);
     if (!(std::abs(deg) <= 1e6)) return refuse("an angle beyond 1e6 deg", kMovesByCam);
     to.turns = to.turns || before.value_or(0) != deg;
     set_rotary(to.position, address, deg);
