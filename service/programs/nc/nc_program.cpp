@@ -100,7 +100,7 @@ cl::Outcome NcProgram::take(std::string_view text) {
   const bool is_siemens = state_.modes.language == Language::kSiemens;
   const bool is_klartext = state_.modes.language == Language::kHeidenhain;
   auto done = is_siemens    ? cut_siemens(text, lines_.line_number(), line_, state_.variables)
-              : is_klartext ? cut_heidenhain(text, lines_.line_number(), line_)
+              : is_klartext ? cut_heidenhain(text, lines_.line_number(), line_, state_.variables)
                             : cut(text, lines_.line_number(), line_);
   if (is_siemens) {
     if (auto named = check_names(line_); !named) return named;

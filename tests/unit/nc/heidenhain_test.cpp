@@ -95,9 +95,11 @@ TEST(Klartext, LeavesThePartAlongTheToolAxis) {
 
 TEST(Klartext, LeavesThePartToTheEndOfTravel) {
   const MachineModel machine = shipped("trunnion-ac");
-  const ReadText read = read_klartext("1 TOOL CALL 1 Z\n2 L X+0 Y+0 Z+5 R0 FMAX\n3 L M140 MB MAX\n",
-                                      klartext(on(machine)));
+  const std::string program = "1 TOOL CALL 1 Z\n2 L X+0 Y+0 Z+5 R0 FMAX\n3 L ";
+  const ReadText read = read_klartext(program + "M140 MB MAX\n", klartext(on(machine)));
   ASSERT_EQ(read.error, "");
+  EXPECT_EQ(read_klartext(program + "R F M140 MBMAX M9\n", klartext(on(machine))).motion().size(),
+            2U);
   const auto motion = read.motion();
   ASSERT_EQ(motion.size(), 2U);
   EXPECT_EQ(axis(motion[1]), Vector3::UnitZ());
@@ -159,11 +161,34 @@ TEST(Klartext, Acts) {
   EXPECT_EQ(read.blocks[7].action, ActionKind::kSpindleOff);
 }
 
+TEST(Klartext, LeavesOutWordsThatWereNotAnswered) {
+  const ReadText read = read_klartext(
+      "2 L X+0 Y+0 R FMAX M\n3 L Z+5 R F600 M8 M\n4 L X+10 R F M\n5 CC X+10 Y+10\n"
+      "6 C X+20 Y+10 DR+ R F M\n7 L R F M\n8 M\n");
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 3U);
+  EXPECT_EQ(motion[0].kind, BlockKind::kCut);
+  EXPECT_DOUBLE_EQ(motion[2].feed, 10);
+  EXPECT_NE(read_klartext("2 L X+0 Y+0 Z+0 FMAX\n3 L X F100\n").error.find("word X without"),
+            std::string::npos);
+  EXPECT_NE(read_klartext("2 L X+0 Y+0 Z+0 FMAX\n3 CR X+1 Y+1 R DR+ F9\n").error, "");
+}
+
+TEST(Klartext, ReadsDeltasOfAToolInBothForms) {
+  for (const char* const delta : {"DR2:+0.1", "DR2+0.1", "DR+0.1", "DL+0.1"}) {
+    const ReadText read = read_klartext("2 TOOL CALL 5 Z S6000 " + std::string(delta) +
+                                        "\n3 L X+0 Y+0 Z+0 R0 FMAX M3\n");
+    EXPECT_EQ(read.error, "") << delta;
+    EXPECT_TRUE(read.warned_of("TOOL CALL are not applied")) << delta;
+  }
+}
+
 TEST(Klartext, RefusesByName) {
   const std::vector<std::pair<const char*, const char*>> cases = {
       {"L X+Q5", "a Q parameter"},
-      {"Q5 = 3", "a Q parameter"},
-      {"FN 0: Q1 = 5", "FN: this word of Klartext"},
+      {"L X+5 FU0.2", "FU: this word"},
+      {"L X+5 FZ0.1", "FZ: this word"},
       {"CALL LBL 1", "CALL LBL: this word"},
       {"CALL PGM A", "CALL PGM: this word"},
       {"TCH PROBE 0.0", "TCH PROBE: this word"},

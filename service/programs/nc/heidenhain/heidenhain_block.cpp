@@ -10,6 +10,7 @@
 #include "service/programs/nc/heidenhain/heidenhain_arcs.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_cycles.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_frames.hpp"
+#include "service/programs/nc/heidenhain/heidenhain_parameters.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_words.hpp"
 #include "service/programs/nc/remedy.hpp"
 
@@ -225,13 +226,38 @@ cl::Outcome call_tool(State& s, const Line& line) {
   return act_before(s, iso);
 }
 
+/// Q5 = 3 of the program's own parameters; others belong to the cycle above.
+bool is_assignment(const Line& line) {
+  const std::string_view text = line.names.front().arguments;
+  return is_free_parameter(text.substr(0, length_of_parameter(text)));
+}
+
+/// Q5 = 3, FN 0: Q5 = 3.
+cl::Outcome run_assignment(State& s, const Line& line) {
+  std::string_view text = line.names.front().arguments;
+  if (line.names.front().name == "FN") {
+    const std::size_t colon = text.find(':');
+    const std::size_t function = text.find_first_not_of(' ');
+    if (colon == std::string_view::npos || text.substr(function, colon - function) != "0") {
+      return refuse(
+          "FN" + std::string(text.substr(0, 16)) + ": jumps and formulas are not run here",
+          kMovesByCam, "FN");
+    }
+    text.remove_prefix(colon + 1);
+  }
+  return assign_parameter(text, s.variables);
+}
+
 }  // namespace
 
 cl::Outcome run_heidenhain(State& s, const Line& line) {
   const std::string_view statement = line.names.front().name;
   act_on_speed(s, line);
-  if (statement == "Q") return take_cycle_parameters(s, line, line.names.front().arguments);
+  if (statement == "Q" && !is_assignment(line)) {
+    return take_cycle_parameters(s, line, line.names.front().arguments);
+  }
   s.modes.open = OpenDefinition::kNone;
+  if (statement == "Q" || statement == "FN") return run_assignment(s, line);
   if (statement == "BEGIN PGM") return begin_program(s, line);
   if (statement == "END PGM") {
     s.cl.structure.phase = cl::Structure::Phase::kEnded;

@@ -8,6 +8,7 @@
 
 #include "service/programs/cl/text/number.hpp"
 #include "service/programs/cl/text/written_text.hpp"
+#include "service/programs/nc/heidenhain/heidenhain_parameters.hpp"
 #include "service/programs/nc/remedy.hpp"
 
 namespace meridian::nc {
@@ -134,7 +135,8 @@ Expected<Drilling, cl::Refusal> drilling_of(const CycleDefinition& cycle) {
 }
 
 /// The next of Q201=-20: parameter, value; the point may be a comma.
-bool take_parameter(std::string_view& text, int& parameter, double& value) {
+bool take_parameter(std::string_view& text, const Variables& variables, int& parameter,
+                    double& value) {
   const std::size_t equals = text.find('=');
   double number = 0;
   if (!text.starts_with('Q') || equals == std::string_view::npos ||
@@ -149,6 +151,10 @@ bool take_parameter(std::string_view& text, int& parameter, double& value) {
   std::replace(plain.begin(), plain.end(), ',', '.');
   text.remove_prefix(size);
   if (plain == "FMAX") plain = "99999";
+  if (const auto named = number_of_parameter(plain, variables)) {
+    value = *named;
+    return true;
+  }
   return cl::parse_number(plain.starts_with('+') ? plain.substr(1) : plain, value);
 }
 
@@ -167,7 +173,8 @@ cl::Outcome take_cycle_parameters(State& s, const Line& line, std::string_view t
     int parameter = 0;
     double value = 0;
     const std::string_view from = text;
-    if (s.modes.open == OpenDefinition::kNone || !take_parameter(text, parameter, value)) {
+    if (s.modes.open == OpenDefinition::kNone ||
+        !take_parameter(text, s.variables, parameter, value)) {
       return refuse("a Q parameter: " + cl::quoted(from.substr(0, 16)), kMovesByCam, "Q");
     }
     if (cycle != nullptr) {

@@ -7,6 +7,7 @@
 #include "service/programs/cl/text/letters.hpp"
 #include "service/programs/cl/text/number.hpp"
 #include "service/programs/cl/text/written_text.hpp"
+#include "service/programs/nc/heidenhain/heidenhain_parameters.hpp"
 #include "service/programs/nc/remedy.hpp"
 
 namespace meridian::nc {
@@ -33,7 +34,8 @@ bool begins_with(std::string_view text, std::string_view word) {
 
 class KlartextCutter {
  public:
-  KlartextCutter(std::string_view text, Line& line) : rest_(text), line_(line) {}
+  KlartextCutter(std::string_view text, Line& line, const Variables& variables)
+      : rest_(text), line_(line), variables_(variables) {}
 
   cl::Outcome cut() {
     take_block_delete();
@@ -73,7 +75,11 @@ class KlartextCutter {
       rest_.remove_prefix(statement.size());
       return statement == "TOOL CALL" ? cut_tool_call() : cl::Outcome();
     }
-    if (rest_.size() > 1 && rest_.front() == 'Q' && is_numeral(rest_[1])) {
+    if (rest_.starts_with("FN") && rest_.size() > 2 && is_numeral(rest_[2])) {  // FN0: Q5 = 3
+      line_.names.push_back({rest_.substr(0, 2), rest_.substr(2)});
+      return {};
+    }
+    if (length_of_parameter(rest_) > 0) {
       line_.names.push_back({rest_.substr(0, 1), rest_});
       return {};
     }
@@ -125,21 +131,31 @@ class KlartextCutter {
   cl::Outcome cut_word() {
     std::size_t size = 0;
     while (size < rest_.size() && cl::is_letter(rest_[size])) ++size;
+    for (std::size_t at = 1; at < size; ++at) {  // FQ5
+      if (length_of_parameter(rest_.substr(at)) > 0) size = at;
+    }
     Word word;
     word.address = rest_.substr(0, size);
     if (size == 0) {
       return refuse("what begins with " + cl::quoted(rest_.substr(0, 1)) + " is no word");
     }
     rest_.remove_prefix(size);
+    if (word.address == "MBMAX") {
+      line_.names.push_back({"MB MAX", {}});
+      return {};
+    }
     if (word.address == "FMAX" || word.address == "FAUTO" || word.address == "RL" ||
         word.address == "RR") {
       line_.names.push_back({word.address, {}});
       return {};
     }
     skip_blanks();
-    if (take_spaced_name(word)) return {};
-    const std::size_t at = rest_.starts_with('+') || rest_.starts_with('-') ? 1 : 0;
-    if (rest_.size() > at && rest_[at] == 'Q') return cut_parameter(word);
+    if (take_spaced_name(word) || is_left_open(word)) return {};
+    if (word.address == "DR" && (rest_.starts_with("2:") || rest_.starts_with("2+") ||
+                                 rest_.starts_with("2-"))) {  // DR2:+0.1 of TOOL CALL
+      word.address = "DR2";
+      rest_.remove_prefix(rest_[1] == ':' ? 2 : 1);
+    }
     const bool is_sense = word.address == "DR" && !rest_.empty() &&
                           (rest_.size() == 1 || !is_numeral(rest_[1])) &&
                           (rest_.front() == '+' || rest_.front() == '-');
@@ -153,7 +169,16 @@ class KlartextCutter {
       word.address.remove_prefix(1);
       word.distance_mode = Word::DistanceMode::kIncremental;
     }
+    const std::size_t at = rest_.starts_with('+') || rest_.starts_with('-') ? 1 : 0;
+    if (rest_.size() > at && rest_[at] == 'Q') return cut_parameter(word);
     return cut_number(word);
+  }
+
+  /// R, F and M without a number: what was asked for at the keyboard and not answered. The feed
+  /// stays.
+  [[nodiscard]] bool is_left_open(const Word& word) const {
+    return (word.is('R') || word.is('F') || word.is('M')) &&
+           (rest_.empty() || cl::is_letter(rest_.front())) && !rest_.starts_with('Q');
   }
 
   /// F MAX and F AUTO of older controls, and MB MAX: a word instead of a number.
@@ -170,21 +195,26 @@ class KlartextCutter {
     return false;
   }
 
-  /// A+Q120, B+Q121, C+Q122: the control puts there what a tilted plane asks of these axes.
+  /// A+Q120, B+Q121, C+Q122: the control puts there what a tilted plane asks of these axes. X+Q5:
+  /// the number that a line above gave it.
   cl::Outcome cut_parameter(Word& word) {
     constexpr std::array<std::string_view, 3> kOfAxis = {"+Q120", "+Q121", "+Q122"};
     const std::size_t axis = word.address.size() == 1
                                  ? static_cast<std::size_t>(word.address.front() - 'A')
                                  : kOfAxis.size();
     const std::size_t size = std::min(rest_.find_first_of(" \t"), rest_.size());
-    if (axis >= kOfAxis.size() || rest_.substr(0, size) != kOfAxis[axis]) {
+    const std::string_view text = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    word.digits = text;
+    word.has_point = true;
+    if (axis < kOfAxis.size() && text == kOfAxis[axis]) {
+      word.distance_mode = Word::DistanceMode::kOfPlane;
+    } else if (const auto number = number_of_parameter(text, variables_)) {
+      word.number = *number;
+    } else {
       return refuse("a Q parameter", kMovesByCam, "Q");
     }
-    rest_.remove_prefix(size);
-    word.distance_mode = Word::DistanceMode::kOfPlane;
-    word.has_point = true;
-    line_.words.push_back(word);
-    return {};
+    return add(word);
   }
 
   /// M128 may have an F of its own.
@@ -211,6 +241,10 @@ class KlartextCutter {
                     " without a number after it");
     }
     rest_.remove_prefix(stop);
+    return add(word);
+  }
+
+  cl::Outcome add(const Word& word) {
     if (!word.is('M') && !is_of_m128(word) && line_.find(word.address) != nullptr) {
       return refuse("word " + std::string(word.address) + " twice in one block");
     }
@@ -220,14 +254,16 @@ class KlartextCutter {
 
   std::string_view rest_;
   Line& line_;
+  const Variables& variables_;
 };
 
 }  // namespace
 
-cl::Outcome cut_heidenhain(std::string_view text, std::uint32_t number, Line& line) {
+cl::Outcome cut_heidenhain(std::string_view text, std::uint32_t number, Line& line,
+                           const Variables& variables) {
   line.begin(text, number);
   std::replace(line.text.begin(), line.text.end(), '\t', ' ');
-  return KlartextCutter(line.text, line).cut();
+  return KlartextCutter(line.text, line, variables).cut();
 }
 
 }  // namespace meridian::nc

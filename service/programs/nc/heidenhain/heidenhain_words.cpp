@@ -25,6 +25,14 @@ bool is_feed_of_m128(const Line& line, std::size_t at) {
   return at > 0 && line.words[at].is('F') && is_code(line.words[at - 1], 128);
 }
 
+/// What the words of a line may say; others would change the feed (FU, FZ, FT) or the path.
+bool is_run_here(std::string_view address) {
+  constexpr std::array<std::string_view, 6> kLong = {"TX", "TY", "TZ", "PA", "IPA", "MB"};
+  constexpr std::string_view kShort = "XYZABCUVWFSTMR";
+  return address.size() == 1 ? kShort.find(address) != std::string_view::npos
+                             : std::find(kLong.begin(), kLong.end(), address) != kLong.end();
+}
+
 /// M94: rotary positions are shown, and count, within a turn from here on.
 void reduce_rotary(State& s) {
   for (RotaryAt& at : s.position.rotary) {
@@ -35,7 +43,7 @@ void reduce_rotary(State& s) {
 void note_delta(State& s, const Line& line, const Word& word) {
   if (word.number == 0) return;
   s.cl.remarks.warn("delta", line.number,
-                    [] { return std::string("DL and DR of TOOL CALL are not applied"); });
+                    [] { return std::string("DL, DR and DR2 of TOOL CALL are not applied"); });
 }
 
 }  // namespace
@@ -98,8 +106,11 @@ cl::Outcome translate(State& s, const Line& line, Translated& out) {
     } else if (word.address == "NX" || word.address == "NY" || word.address == "NZ" ||
                word.address == "LA") {
       s.cl.summary.skip(word.address, line.number);
-    } else if (word.address == "DL" || word.address == "DR") {
+    } else if (word.address == "DL" || word.address == "DR" || word.address == "DR2") {
       note_delta(s, line, word);
+    } else if (!is_run_here(word.address)) {
+      const std::string name(word.address.substr(0, 16));
+      return refuse(name + ": this word of Klartext is not run here", kMovesByCam, name);
     } else {
       move_word(iso, word, word.address);
     }

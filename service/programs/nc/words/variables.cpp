@@ -68,7 +68,7 @@ cl::Outcome Variables::set(std::string_view name, double number) {
     at->second = number;
     return {};
   }
-  if (!is_r_parameter(name) || numbers_.size() >= kMax) {
+  if (!(is_r_parameter(name) || name.starts_with('Q')) || numbers_.size() >= kMax) {
     return refuse(
         "a value for " + std::string(name.substr(0, 32)) + ", which the control alone knows",
         kNumbersByCam, "assignment");

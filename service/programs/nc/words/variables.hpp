@@ -10,9 +10,9 @@
 
 namespace meridian::nc {
 
-/// The numbers that a Siemens program gives names to: R parameters, and what DEF declares. As no
-/// jump and no condition is run, a name stands for the number that the last line above gave it.
-/// Proof: tests/unit/nc/siemens_variable_test.cpp.
+/// The numbers that a program gives names to: R parameters of Siemens and what DEF declares, Q
+/// parameters of Klartext. As no jump and no condition is run, a name stands for the number that
+/// the last line above gave it. Proof: tests/unit/nc/siemens_variable_test.cpp.
 class Variables {
  public:
   static constexpr std::size_t kMax = 1000;
@@ -20,7 +20,7 @@ class Variables {
   /// Takes the text after DEF: "REAL _X, _Y=2.5".
   [[nodiscard]] cl::Outcome declare(std::string_view text);
   [[nodiscard]] bool has(std::string_view name) const { return numbers_.contains(name); }
-  /// Gives a declared name, or an R parameter, its number.
+  /// Gives a declared name, or an R or Q parameter, its number.
   [[nodiscard]] cl::Outcome set(std::string_view name, double number);
   /// Nothing where no line gave it a number.
   [[nodiscard]] std::optional<double> find(std::string_view name) const;
