@@ -223,7 +223,9 @@ cl::Outcome run_motion(State& s, const Line& line, OneShot shot) {
     case OneShot::Kind::kPlaneTilt:
       return define_plane(s, line);
     case OneShot::Kind::kPlaneFollow:
-      if (moves(line)) return refuse("G53.1 with axis words", "write it in a block of its own");
+      if (moves(line)) {
+        return refuse("G53.1 or G53.6 with words beside P", "write it in a block of its own");
+      }
       return follow_plane(s, line);
     case OneShot::Kind::kLocalZero:
       return set_local_zero(s, line);

@@ -106,13 +106,14 @@ cl::Outcome set_control(State& s, const Line& line, Control control) {
 }
 
 cl::Outcome set_work_offset(State& s, const Line& line, int tenths) {
+  constexpr int kOfTable = 541, kOfTableOfHaas = 1540;
   int offset = tenths;
-  if (tenths == 541) {
+  if (tenths == kOfTable || tenths == kOfTableOfHaas) {
     const Word* const p = line.find("P");
     const bool is_whole = p != nullptr && p->number >= 1 && p->number <= 999 &&
                           p->number == static_cast<int>(p->number);
-    if (!is_whole) return refuse("G54.1 needs its number, such as P1");
-    offset += kPerRow * static_cast<int>(p->number);
+    if (!is_whole) return refuse("G54.1 and G154 need their number, such as P1");
+    offset = kOfTable + kPerRow * static_cast<int>(p->number);
   }
   take_offset(s, line, offset);
   return {};

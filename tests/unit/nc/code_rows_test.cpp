@@ -32,7 +32,7 @@ std::string program_of(const GRow& row) {
     case GKind::kFeed:
       return above + "S100 M3\n" + code + " G1 X9. F5.\n";
     case GKind::kWorkOffset:
-      return code + (row.tenths == 541 ? " P1\n" : "\n") + above + "G1 X9.\n";
+      return code + (row.tenths == 541 || row.tenths == 1540 ? " P1\n" : "\n") + above + "G1 X9.\n";
     case GKind::kCycle:
       return above + "S100 M3\n" + code +
              (row.value != 0 ? " X9. Z-9. R2. Q3. P100\nG80\n" : "\nG1 X9.\n");

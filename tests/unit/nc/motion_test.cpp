@@ -206,6 +206,19 @@ TEST(NcMotion, SaysWhichWorkOffsetIsTheFrameOfTheStation) {
   EXPECT_EQ(read_nc("G54.1 P12\nG0 X1. Y2. Z3.\n").summary.nc.work_offset, "G54.1 P12");
 }
 
+TEST(NcMotion, NamesTheWorkOffsetsOfHaasAsThoseOfTheTable) {
+  EXPECT_EQ(read_nc("G154 P3\nG0 X1. Y2. Z3.\n").summary.nc.work_offset, "G54.1 P3");
+  EXPECT_NE(read_nc("G154\nG0 X1. Y2. Z3.\n").error.find("G154 need their number"),
+            std::string::npos);
+}
+
+TEST(NcMotion, RefusesALeanOfTheToolBesideAPoint) {
+  const std::string program = "G43.5 H1\nG0 X0. Y0. Z9. I0. J0. K1. ";
+  const ReadText lean = read_nc(program + "Q5.\nG1 X9.\n");
+  EXPECT_NE(lean.error.find("part.apt:5: word Q beside a point"), std::string::npos) << lean.error;
+  EXPECT_EQ(read_nc(program + "Q0.\nG1 X9.\n").error, "");
+}
+
 TEST(NcMotion, WarnsOfNumbersWithoutAPoint) {
   EXPECT_TRUE(read_nc("G0 X100 Y0 Z0\n").warned_of("no decimal point"));
   EXPECT_FALSE(read_nc("G0 X100. Y0 Z0\n").warned_of("no decimal point"));

@@ -153,7 +153,7 @@ TEST(TiltedPlane, RefusesWhatItCannotRead) {
            {"G43.5 H1\nG68.2 X0. Y0. Z0. I0. J0. K0.\n", "tool-centre control is on"},
            {"G68.2 X0. Y0. Z0. I0. J9. K0.\nG43.5 H1\nG0 X0. Y0. Z0. I0. J0. K1.\n",
             "G43.5 in a tilted plane"},
-           {"G68.2 X0. Y0. Z0. I0. J9. K0.\nG53.1 X5.\n", "G53.1 with axis words"},
+           {"G68.2 X0. Y0. Z0. I0. J9. K0.\nG53.1 X5.\n", "G53.6 with words beside P"},
            {"G68.2 X0. Y0. Z0. I0. J9. K0.\nG52 X5.\n", "G52 in a tilted plane"}}) {
     EXPECT_NE(read_nc(body).error.find(says), std::string::npos) << body << read_nc(body).error;
   }

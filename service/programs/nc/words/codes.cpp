@@ -119,7 +119,8 @@ constexpr std::array kG = std::to_array<GRow>({
     {970, kNothing},
     {980, kReturn, 0},
     {990, kReturn, 1},
-    {1030, kSetting},  // Haas: how far it looks ahead
+    {1030, kSetting},     // Haas: how far it looks ahead
+    {1540, kWorkOffset},  // Haas: G154 Pn
     {1870, kSetting},
     {2340, kControl, of(Control::kRotary)},  // Haas
     {2540, kDynamicOffset, 1},               // Haas

@@ -165,6 +165,11 @@ cl::Outcome check_words(const State& s, const Line& line, bool is_arc) {
                     kMovesByCam);
     }
   }
+  const Word* const lean = line.find("Q");
+  if (lean != nullptr && lean->number != 0) {
+    return refuse("word Q beside a point: under G43.5 the control leans the tool by it",
+                  "output the tool axis itself, and Q0");
+  }
   const bool is_fanuc = s.modes.language == Language::kFanuc;  // else D is the tool's own offset
   if (line.find("E") != nullptr || (is_fanuc && line.find("D") != nullptr)) {
     return refuse("word E or D in a motion block is not understood",
