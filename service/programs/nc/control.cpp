@@ -96,7 +96,8 @@ cl::Outcome set_control(State& s, const Line& line, Control control) {
   const bool has_bare = before == Control::kNone || control == Control::kNone;
   if (was_on != is_on && has_bare) s.position.tip[2].reset();
   if (control == Control::kVector) s.position.vector.reset();
-  if (control == Control::kRotary && s.position.rotary.empty()) {
+  const bool has_no_word = s.position.rotary.empty() && !s.position.is_by_control;
+  if (control == Control::kRotary && has_no_word) {
     s.cl.remarks.warn("rotary zero", line.number, [] {
       return "tool-centre control before any rotary word: the rotary axes are taken to stand at "
              "zero";

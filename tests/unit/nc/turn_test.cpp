@@ -99,5 +99,43 @@ TEST(NcTurn, RefusesMoreThanAHundredTurns) {
   EXPECT_NE(read.error.find("more than a hundred turns"), std::string::npos);
 }
 
+/// A program of each language: the tool tilted by vectors, tool-centre control off, `between`, a
+/// cut.
+std::vector<ReadText> cuts_after_vectors(const std::string& tilt, const std::string& between) {
+  const auto options = on(shipped("trunnion-ac"));
+  const std::string numbers = tilt == "0" ? " I0. J0. K1." : " I0.6 J0. K0.8";
+  return {read_nc("G43.5 H1\nG0 X0. Y0. Z9. I0. J0. K1.\nG1 X1." + numbers + "\nG49\nG43 H1\nG0" +
+                      between + " Z9.\nX0. Y0. Z5.\nG1 X5.\n",
+                  options),
+          read_siemens("TRAORI\nG0 X0 Y0 Z9 A3=0 B3=0 C3=1\nG1 X1 A3=" + tilt +
+                           " C3=1\nTRAFOOF\nG0" + between + " Z9\nX0 Y0 Z5\nG1 X5\n",
+                       siemens(options)),
+          read_klartext("1 M128\n2 LN X+0 Y+0 Z+9 TX+0 TY+0 TZ+1 FMAX\n3 LN X+1 TX+" + tilt +
+                            " TZ+1 F600\n4 M129\n5 L" + between +
+                            " Z+9 FMAX\n6 L X+0 Y+0 Z+5 FMAX\n7 L X+5 F600\n",
+                        klartext(options))};
+}
+
+TEST(Turns, ByVectorsLeaveTheRotaryAxesWhereNoWordSays) {
+  for (const ReadText& read : cuts_after_vectors("0.6", "")) {
+    EXPECT_NE(read.error.find("while a rotary axis is not at zero"), std::string::npos)
+        << read.error << read.summary.dialect;
+  }
+  for (const ReadText& read : cuts_after_vectors("0.6", " C0")) {
+    EXPECT_NE(read.error.find("while a rotary axis is not at zero"), std::string::npos)
+        << read.error << read.summary.dialect;
+  }
+  for (const ReadText& read : cuts_after_vectors("0.6", " A0 C0")) EXPECT_EQ(read.error, "");
+  for (const ReadText& read : cuts_after_vectors("0", "")) EXPECT_EQ(read.error, "");
+}
+
+TEST(Turns, ByOneRotaryWordAfterVectorsAreRefused) {
+  const ReadText read = read_siemens(
+      "G0 A0 C0\nTRAORI\nG0 X0 Y0 Z9 A3=0 B3=0 C3=1\nG1 X1 A3=0.6 C3=0.8\nG1 X2 C90\nTRAFOOF\n",
+      siemens(on(shipped("trunnion-ac"))));
+  EXPECT_EQ(read.error_line, 8U) << read.error;
+  EXPECT_NE(read.error.find("no word says to where"), std::string::npos) << read.error;
+}
+
 }  // namespace
 }  // namespace meridian::nc

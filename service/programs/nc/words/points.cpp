@@ -15,6 +15,7 @@ namespace {
 using cl::refuse;
 
 constexpr std::array<std::string_view, 3> kTip = {"X", "Y", "Z"};
+constexpr double kSameAxis = 1e-5;  // digits of the numbers that give a tool axis
 
 /// Numbers without a point are whole units here; older controls count least increments.
 void note_digits(State& s, const Line& line, const Word& word) {
@@ -124,7 +125,7 @@ cl::Outcome find_axis(const State& s, Target& to) {
     if (!s.axes->refusal().empty()) return refuse(s.axes->refusal(), kRightMachine, "machine");
     if (to.position.is_by_control) {
       return refuse(
-          "the control turned the rotary axes (G53.1 and its kin), and no word says to "
+          "the control turned the rotary axes (G53.1 and its kin, or vectors), and no word says to "
           "where",
           "write all rotary words into the first block with tool-centre control", "not given");
     }
@@ -147,6 +148,18 @@ cl::Outcome find_axis(const State& s, Target& to) {
   }
   to.axis = direction_in_w(s, axis);
   return {};
+}
+
+/// A vector that leads elsewhere than the rotary words did: the control has turned the rotary axes,
+/// and where they stand is not in the program.
+void note_turn_by_vector(const State& s, Target& to) {
+  if (s.modes.control != Control::kVector) return;
+  const bool has_words = s.axes && s.axes->refusal().empty();
+  const Vector3 by_words =
+      has_words ? s.axes->axis(to.position.rotary) : direction_in_w(s, Vector3::UnitZ());
+  if ((to.axis - by_words).norm() <= kSameAxis) return;
+  to.position.is_by_control = true;
+  to.position.rotary.clear();
 }
 
 /// Words that mean nothing where they stand.
@@ -208,15 +221,16 @@ cl::Outcome check_plane(const State& s, const Target& to) {
                 "no G53.1");
 }
 
+/// Without tool-centre control a cut is that of the tip only where no rotary axis is turned.
+cl::Outcome check_tip(const State& s, const Target& to) {
+  if (s.modes.motion != Motion::kLine || is_of_tip(s, to)) return {};
+  return refuse("a cut without tool-centre control while a rotary axis is not at zero",
+                "output G43.4 or G43.5, under which X Y Z are those of the tool tip", "no tip");
+}
+
 cl::Outcome move_plainly(State& s, const Line& line, const Target& to) {
   warn_of_no_length(s, line);
-  const bool is_cut = s.modes.motion != Motion::kRapid;
-  if (is_of_tip(s, to)) {
-    if (to.position.is_known()) return line_to(s, line, to);
-  } else if (is_cut) {
-    return refuse("a cut without tool-centre control while a rotary axis is not at zero",
-                  "output G43.4 or G43.5, under which X Y Z are those of the tool tip", "no tip");
-  }
+  if (is_of_tip(s, to) && to.position.is_known()) return line_to(s, line, to);
   if (s.cl.path.has_moved()) warn_of_unseen_rapid(s, line);
   s.position = to.position;
   if (!is_of_tip(s, to)) s.position.forget();
@@ -263,7 +277,9 @@ cl::Outcome move(State& s, const Line& line) {
     if (auto done = take_vector(s, line, to); !done) return done;
   }
   if (auto done = find_axis(s, to); !done) return done;
+  note_turn_by_vector(s, to);
   if (auto done = check_plane(s, to); !done) return done;
+  if (auto done = check_tip(s, to); !done) return done;
   const bool is_cut = s.modes.motion != Motion::kRapid;
   const bool has_begun = s.cl.path.has_moved() || is_arc;
   if (is_cut && (!to.position.is_known() || (has_begun && !s.position.is_known()))) {
