@@ -206,5 +206,14 @@ TEST(Refusal, OfMotionBehindTheEnd) {
             std::string::npos);
 }
 
+TEST(Refusals, SayWhatADefinitionOfTheSourceLanguageIs) {
+  for (const char* const line : {"P1=POINT/1,2,3", "P1 = POINT/1,2,3"}) {
+    const auto read = read_text("UNITS/MM\n" + std::string(line) + "\nGOTO/1,2,3\nFINI\n");
+    EXPECT_NE(read.error.find("part.apt:2: a definition in the source language of APT: 'P1' = ..."),
+              std::string::npos)
+        << read.error;
+  }
+}
+
 }  // namespace
 }  // namespace meridian::cl

@@ -76,6 +76,10 @@ Outcome Interpreter::read_unknown(const Statement& s) {
   if (std::find(allowed.begin(), allowed.end(), s.major) != allowed.end()) {
     return pass_on(modal_, s);
   }
+  if (s.rest.starts_with('=')) {
+    return refuse("a definition in the source language of APT: " + quoted(s.major) + " = ...",
+                  "output the CL file that its processor makes of it", "definition");
+  }
   return refuse(
       "unknown word " + quoted(s.major),
       "--allow-unknown " + std::string(s.major) + " passes it to the machine as a vendor word",
