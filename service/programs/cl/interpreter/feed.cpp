@@ -99,11 +99,15 @@ Expected<MotionFeed, Refusal> feed_of(const WrittenFeed& written, const FeedCont
   return MotionFeed{BlockKind::kCut, FeedMeaning::kTip, feed};
 }
 
+bool is_of_other_unit(FeedUnit feed, LengthUnit unit) {
+  const double length_mm = meaning_of(feed).length_mm;
+  return length_mm > 0 && (unit == LengthUnit::kInch) == (length_mm == 1);
+}
+
 void remark_on_feed(const WrittenFeed& written, const MotionFeed& feed, LengthUnit unit,
                     double max_feed_mm_per_s, std::uint32_t line, Remarks& remarks) {
   const bool is_inch = unit == LengthUnit::kInch;
-  const double length_mm = meaning_of(written.unit).length_mm;
-  if (length_mm > 0 && is_inch == (length_mm == 1)) {
+  if (is_of_other_unit(written.unit, unit)) {
     remarks.warn("feed unit", line, [is_inch] {
       return std::string("points in ") + (is_inch ? "inch" : "millimetre") + ", but feed in " +
              (is_inch ? "millimetre" : "inch") + ": both are taken as written";

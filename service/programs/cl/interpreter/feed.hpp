@@ -64,6 +64,10 @@ struct FeedContext {
 [[nodiscard]] Expected<MotionFeed, Refusal> feed_of(const WrittenFeed& written,
                                                     const FeedContext& context);
 
+/// Whether a feed word is of millimetres where lengths are in inch, or of inches and feet where
+/// they are in millimetre.
+[[nodiscard]] bool is_of_other_unit(FeedUnit feed, LengthUnit unit);
+
 /// What contradicts itself, or will not be kept: points and feed in different units, a feed beyond
 /// the machine's.
 void remark_on_feed(const WrittenFeed& written, const MotionFeed& feed, LengthUnit unit,

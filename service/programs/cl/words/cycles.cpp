@@ -131,6 +131,9 @@ Outcome run_move(Modal& m, const HoleMove& move, const Vector3& top, const HoleF
 
 Expected<MotionFeed, Refusal> feed_of_cycle(Modal& m, const WrittenFeed& written,
                                             std::uint32_t line) {
+  if (auto done = check_unit_by_feed(m, written.unit); !done) {
+    return tl::make_unexpected(done.error());
+  }
   auto feed = feed_of(written, {*m.units.in_force, m.spindle});
   if (!feed) return feed;
   remark_on_feed(written, *feed, *m.units.in_force, m.options.max_feed_mm_per_s, line, m.remarks);

@@ -123,6 +123,19 @@ Outcome axis_left_out(Modal& m, std::uint32_t line) {
       "axis left out");
 }
 
+/// The feed word is all that shows the unit of a file without a unit word.
+Outcome check_unit_by_feed(const Modal& m, FeedUnit feed) {
+  const LengthUnit unit = *m.units.in_force;
+  if (m.summary.unit_source != UnitSource::kStation || !is_of_other_unit(feed, unit)) return {};
+  const bool is_inch = unit == LengthUnit::kInch;
+  return refuse(std::string("a file without a unit word would be read in ") +
+                    (is_inch ? "inch" : "millimetre") + ", but its feed is in " +
+                    (is_inch ? "millimetre" : "inch"),
+                is_inch ? "--units mm, or --units inch where the points are in inch"
+                        : "--units inch, or --units mm where the points are in millimetre",
+                "unit by feed");
+}
+
 Expected<MotionFeed, Refusal> cutting_feed(Modal& m, std::uint32_t line) {
   if (m.feed) [[likely]]
     return *m.feed;
@@ -133,6 +146,9 @@ Expected<MotionFeed, Refusal> cutting_feed(Modal& m, std::uint32_t line) {
     }
     feed = {BlockKind::kCut, FeedMeaning::kTip, *m.options.default_feed_mm_per_s};
   } else {
+    if (auto done = check_unit_by_feed(m, m.written_feed.unit); !done) {
+      return tl::make_unexpected(done.error());
+    }
     const auto written = feed_of(m.written_feed, {*m.units.in_force, m.spindle});
     if (!written) return tl::make_unexpected(written.error());
     feed = *written;

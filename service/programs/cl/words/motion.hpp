@@ -29,6 +29,9 @@ void put_copy_in_force(Modal& m, const Frame& before);
 /// What the tool axis is at a point that leaves it out: as the dialect means it.
 [[nodiscard]] Outcome axis_left_out(Modal& m, std::uint32_t line);
 
+/// Refuses a feed that contradicts the default unit of a file without a unit word.
+[[nodiscard]] Outcome check_unit_by_feed(const Modal& m, FeedUnit feed);
+
 /// The feed of the motion that comes: RAPID is used up by it.
 [[nodiscard]] Expected<MotionFeed, Refusal> next_feed(Modal& m, std::uint32_t line);
 
