@@ -215,5 +215,19 @@ TEST(Refusals, SayWhatADefinitionOfTheSourceLanguageIs) {
   }
 }
 
+TEST(Refusals, NameAModeInWhichPointsMeanSomethingElse) {
+  for (const char* const mode : {"MODE/LATHE", "MODE/POLAR,ON", "MODE/TURN", "APPLY/ TURN"}) {
+    const auto read = read_body(std::string(mode) + "\nGOTO/1,2,3\n");
+    EXPECT_NE(read.error.find("part.apt:3"), std::string::npos) << mode << read.error;
+    EXPECT_NE(read.error.find("changes what the points after it mean"), std::string::npos) << mode;
+  }
+  EXPECT_TRUE(read_body("MODE/SMOOTH,3\nGOTO/1,2,3\n").warned_of("MODE/SMOOTH,3 is skipped"));
+  for (const char* const mode : {"MODE/MILL", "APPLY/ MILL", "SET/MODE,ABSOL", "MODE/ABSOL"}) {
+    const auto read = read_body(std::string(mode) + "\nGOTO/1,2,3\n");
+    EXPECT_EQ(read.error, "") << mode;
+    EXPECT_TRUE(read.warnings.empty()) << mode;
+  }
+}
+
 }  // namespace
 }  // namespace meridian::cl

@@ -201,12 +201,19 @@ Outcome read_mode(Modal& m, const Statement& s) {
   if (s.has_word("INCR") || s.has_word("INCREM")) {
     return refuse("incremental coordinates", "output absolute coordinates");
   }
-  for (const char* const word : {"TURN", "TOOL", "AXIS"}) {
-    if (s.has_word(word) && s.major != "SET") {
+  if (s.major == "SET") return skip(m, s);
+  for (const char* const word : {"TURN", "LATHE", "POLAR", "CYLNDR", "DIAMTR", "TOOL", "AXIS"}) {
+    if (s.has_word(word)) {
       return refuse(
           std::string(s.major) + "/" + std::string(word) + " changes what the points after it mean",
           "output points of the tool tip in the part");
     }
+  }
+  if (!s.has_word("MILL") && !s.has_word("ABSOL")) {
+    m.remarks.warn(s.major, s.line, [&s] {
+      return std::string(s.major) + "/" + std::string(s.rest.substr(0, 24)) +
+             " is skipped: what it asks of a post-processor is not done";
+    });
   }
   return skip(m, s);
 }
