@@ -114,7 +114,7 @@ cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot
       s.cl.feed.reset();
       break;
     case GKind::kControl:
-      return set_control(s, line, static_cast<Control>(row.value));
+      return take_length(s, line, static_cast<Control>(row.value));
     case GKind::kWorkOffset:
       return set_work_offset(s, line, row.tenths);
     case GKind::kPlaneOff:

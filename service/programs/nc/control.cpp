@@ -106,6 +106,24 @@ cl::Outcome set_control(State& s, const Line& line, Control control) {
   return {};
 }
 
+cl::Outcome take_length(State& s, const Line& line, Control control) {
+  const Word* const h = line.find("H");
+  if (h == nullptr || control == Control::kNone) return set_control(s, line, control);
+  if (h->number == 0) {
+    if (!holds_tip(control)) return set_control(s, line, Control::kNone);
+    return refuse("H0: tool-centre control without the length of the tool",
+                  "write H with the number of the tool");
+  }
+  if (s.cl.tool && h->number != *s.cl.tool) {
+    s.cl.remarks.warn("H", line.number, [&] {
+      return "H" + std::string(h->digits) + " beside tool " + std::to_string(*s.cl.tool) +
+             ": the length is that of the tool; the control takes it from offset " +
+             std::string(h->digits);
+    });
+  }
+  return set_control(s, line, control);
+}
+
 cl::Outcome set_work_offset(State& s, const Line& line, int tenths) {
   constexpr int kOfTable = 541, kOfTableOfHaas = 1540;
   int offset = tenths;

@@ -130,6 +130,9 @@ enum class MachinePosition : std::uint8_t {
 
 // control.cpp
 [[nodiscard]] cl::Outcome set_control(State& s, const Line& line, Control control);
+/// G43, G43.4 and G43.5 with their H, G49. H0 is no length; another number than the tool's is an
+/// offset that only the control knows.
+[[nodiscard]] cl::Outcome take_length(State& s, const Line& line, Control control);
 [[nodiscard]] cl::Outcome set_work_offset(State& s, const Line& line, int tenths);
 /// CYCL DEF 247 of Klartext: a row of the preset table.
 void set_preset(State& s, const Line& line, int row);

@@ -212,6 +212,17 @@ TEST(NcMotion, NamesTheWorkOffsetsOfHaasAsThoseOfTheTable) {
             std::string::npos);
 }
 
+TEST(NcMotion, TakesNoLengthFromH0AndFlagsThatOfAnotherTool) {
+  const std::string point = " H0\nG0 X0. Y0. Z9. A0. C0.\nG1 X5.\n";
+  EXPECT_TRUE(read_nc("G43" + point).warned_of("a cut without G43"));
+  const ReadText refused = read_nc("G43.4" + point, on(shipped("trunnion-ac")));
+  EXPECT_NE(refused.error.find("part.apt:4: H0: tool-centre control without"), std::string::npos)
+      << refused.error;
+  const std::string call = "T2 M6\nS500 M3\nG43 H";
+  EXPECT_TRUE(read_nc(call + "12\nG0 X0. Y0. Z9.\n").warned_of("H12 beside tool 2"));
+  EXPECT_TRUE(read_nc(call + "2\nG0 X0. Y0. Z9.\n").warnings.empty());
+}
+
 TEST(NcMotion, RefusesALeanOfTheToolBesideAPoint) {
   const std::string program = "G43.5 H1\nG0 X0. Y0. Z9. I0. J0. K1. ";
   const ReadText lean = read_nc(program + "Q5.\nG1 X9.\n");
