@@ -19,6 +19,7 @@ constexpr std::uint8_t of(E value) {
 }
 
 constexpr std::string_view kByCamOnly = "let the CAM system write the moves themselves";
+constexpr std::string_view kThread = "the feed is tied to the turn of the spindle";
 constexpr std::string_view kRadiusOnly =
     "radius compensation is the control's; output the path of the tool's centre (G40)";
 
@@ -33,6 +34,7 @@ constexpr std::array kG = std::to_array<GRow>({
     {170, kPlane, 2},
     {180, kPlane, 1},
     {190, kPlane, 0},
+    {330, kRefused, 0, kThread, kByCamOnly},
     {400, kNothing},
     {410, kRefused, 0, kRadiusOnly},
     {420, kRefused, 0, kRadiusOnly},
@@ -42,6 +44,7 @@ constexpr std::array kG = std::to_array<GRow>({
     {560, kWorkOffset},
     {570, kWorkOffset},
     {600, kNothing},
+    {630, kRefused, 0, kThread, kByCamOnly},
     {640, kNothing},
     {700, kRefused, 0, "inch for lengths, but not for feeds", "G700"},
     {710, kUnit, 0},
@@ -58,6 +61,10 @@ constexpr std::array kG = std::to_array<GRow>({
     {1110, kRefused, 0, "polar coordinates", kByCamOnly},
     {1120, kRefused, 0, "polar coordinates", kByCamOnly},
     {1530, kMachinePosition},
+    {2900, kNothing},  // the words of Siemens
+    {2910, kRefused, 0, "words of ISO from here on", "output words of Siemens alone"},
+    {3310, kRefused, 0, kThread, kByCamOnly},
+    {3320, kRefused, 0, kThread, kByCamOnly},
     {4500, kNothing},
     {4510, kNothing},
     {5000, kWorkOffset},

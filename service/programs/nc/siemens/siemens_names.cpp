@@ -16,6 +16,9 @@ using cl::refuse;
 constexpr std::string_view kMacro = "variables, jumps and subprograms are not run here";
 constexpr std::string_view kCone = "a way of the tool axis that is no great circle";
 constexpr std::string_view kCurve = "a spline of the control";
+constexpr std::string_view kJoints = "every axis goes for itself, and the tip leaves the line";
+constexpr std::string_view kCarrier = "a frame by a tool carrier, which only the control knows";
+constexpr std::string_view kPattern = "a cycle that only the control knows";
 
 constexpr std::array kNames = std::to_array<NameRow>({
     {"TRAORI", NameKind::kOn},
@@ -39,6 +42,7 @@ constexpr std::array kNames = std::to_array<NameRow>({
     {"CFC", NameKind::kNothing},
     {"CFIN", NameKind::kNothing},
     {"CFTCP", NameKind::kNothing},
+    {"CP", NameKind::kNothing},  // ends PTP
     {"COMPCAD", NameKind::kNothing},
     {"COMPCURV", NameKind::kNothing},
     {"COMPOF", NameKind::kNothing},
@@ -121,6 +125,21 @@ constexpr std::array kNames = std::to_array<NameRow>({
     {"POLY", NameKind::kRefused, kCurve},
     {"CIP", NameKind::kRefused, "an arc by a point between"},
     {"CT", NameKind::kRefused, "a tangent arc"},
+    {"PTP", NameKind::kRefused, kJoints},
+    {"PTPG0", NameKind::kRefused, kJoints},
+    {"PAROT", NameKind::kRefused, kCarrier},
+    {"TCOABS", NameKind::kRefused, kCarrier},
+    {"TCOFR", NameKind::kRefused, kCarrier},
+    {"TOFRAME", NameKind::kRefused, kCarrier},
+    {"TOROT", NameKind::kRefused, kCarrier},
+    {"TOFFON", NameKind::kRefused, "a shift along the tool while the program runs"},
+    {"HOLES1", NameKind::kRefused, kPattern},
+    {"HOLES2", NameKind::kRefused, kPattern},
+    {"LONGHOLE", NameKind::kRefused, kPattern},
+    {"POCKET3", NameKind::kRefused, kPattern},
+    {"POCKET4", NameKind::kRefused, kPattern},
+    {"SLOT1", NameKind::kRefused, kPattern},
+    {"SLOT2", NameKind::kRefused, kPattern},
     {"ORIRESET", NameKind::kRefused, "turns the tool to where the machine has its begin"},
     {"MEAS", NameKind::kRefused, "probing: where it ends only the machine knows"},
     {"MEAW", NameKind::kRefused, "probing: where it ends only the machine knows"},
@@ -142,6 +161,7 @@ constexpr std::array kNames = std::to_array<NameRow>({
     {"PROC", NameKind::kRefused, kMacro},
     {"REPEAT", NameKind::kRefused, kMacro},
     {"RET", NameKind::kRefused, kMacro},
+    {"TRAANG", NameKind::kRefused, "a transformation of the control"},
     {"TRACYL", NameKind::kRefused, "a transformation of the control"},
     {"TRANSMIT", NameKind::kRefused, "a transformation of the control"},
     {"WHILE", NameKind::kRefused, kMacro},
