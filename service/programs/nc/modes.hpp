@@ -110,6 +110,9 @@ struct Modes {
   double auto_feed = 0;        ///< F of TOOL CALL in Klartext, which FAUTO means; 0: none
   bool has_new_speed = false;  ///< TOOL CALL S of Klartext, for a spindle that turns
   Orientation orientation;
+  /// AXIS SPAT of Klartext: the last A, B and C, deg, which turn the tool about the fixed x, then
+  /// y, then z; nothing: they are positions of rotary axes.
+  std::optional<std::array<std::optional<double>, 3>> in_space_deg;
   bool has_dynamic_offset = false;  ///< G254: the plane is that of the rotary words
 
   [[nodiscard]] bool is_incremental() const noexcept { return distance == Distance::kIncremental; }

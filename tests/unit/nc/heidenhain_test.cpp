@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "meridian/units.hpp"
 #include "unit/nc/read_nc.hpp"
 
 namespace meridian::nc {
@@ -161,6 +162,42 @@ TEST(Klartext, Acts) {
   EXPECT_EQ(read.blocks[7].action, ActionKind::kSpindleOff);
 }
 
+TEST(Klartext, TurnsTheToolByAnglesInSpace) {
+  const std::string head =
+      "1 FUNCTION TCPM F TCP AXIS SPAT PATHCTRL VECTOR\n2 L X+0 Y+0 Z+9 A+0 B+0 C+0 FMAX\n";
+  const ReadText read = read_klartext(
+      head + "3 L X+1 B+30 F600\n4 L X+2 C+90\n5 L X+3\n6 L X+4 A-30 B+0 C+180\n", klartext());
+  ASSERT_EQ(read.error, "");
+  const auto motion = read.motion();
+  ASSERT_EQ(motion.size(), 5U);
+  const double c = std::cos(units::rad_from_deg(30));
+  EXPECT_LT((axis(motion[1]) - Vector3(0.5, 0, c)).norm(), kTiny);
+  EXPECT_LT((axis(motion[2]) - Vector3(0, 0.5, c)).norm(), kTiny) << "B, and then C about z";
+  EXPECT_EQ(axis(motion[3]), axis(motion[2]));
+  EXPECT_LT((axis(motion[4]) - Vector3(0, -0.5, c)).norm(), kTiny) << "A, and then C about z";
+  EXPECT_TRUE(read.warnings.empty());
+  for (const char* const line : {"3 L X+1 IB+30 F600\n", "3 LN X+1 A+5 TX+0 TY+0 TZ+1 F600\n"}) {
+    EXPECT_NE(read_klartext(head + line).error, "") << line;
+  }
+  EXPECT_NE(read_klartext("1 FUNCTION TCPM F TCP AXIS SPAT PATHCTRL VECTOR\n"
+                          "2 L X+0 Y+0 Z+9 B+5 FMAX\n")
+                .error.find("needs all of A, B and C"),
+            std::string::npos);
+}
+
+TEST(Klartext, EndsAnglesInSpaceWithTcpmAndM128) {
+  const std::string space =
+      "1 FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS\n2 L X+0 Y+0 Z+9 A+0 B+0 C+0 FMAX\n"
+      "3 FUNCTION RESET TCPM\n";
+  const auto options = klartext(on(shipped("trunnion-ac")));
+  const ReadText joints =
+      read_klartext(space + "4 M128\n5 L X+1 Y+0 Z+9 A+30 C+0 FMAX\n6 L X+2 C+90 F600\n", options);
+  ASSERT_EQ(joints.error, "");
+  EXPECT_GT(joints.motion().size(), 3U) << "positions of the joints, which turn evenly";
+  EXPECT_NE(read_klartext(space + "4 L X+0 Y+0 Z+9 B+30 FMAX\n", options).error, "")
+      << "the machine has no B";
+}
+
 TEST(Klartext, LeavesOutWordsThatWereNotAnswered) {
   const ReadText read = read_klartext(
       "2 L X+0 Y+0 R FMAX M\n3 L Z+5 R F600 M8 M\n4 L X+10 R F M\n5 CC X+10 Y+10\n"
@@ -204,7 +241,6 @@ TEST(Klartext, RefusesByName) {
       {"C X+1 Y+1 DR+", "an arc (C) before any CC"},
       {"CR X+1 Y+1 R+5", "an arc without DR+ or DR-"},
       {"LN X+1 TX+0 TY+0 TZ+1 F5", "TX, TY, TZ without tool-centre control"},
-      {"FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS", "angles in space"},
       {"FUNCTION TCPM F TCP AXIS POS REFPNT CENTER-CENTER", "the ball's centre"},
       {"L X+1 F5 M140 MB5", "M140 beside coordinates"},
       {"L M140", "M140 needs MB"},

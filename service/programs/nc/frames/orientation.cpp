@@ -52,8 +52,11 @@ cl::Outcome choose_orientation(State& s, const Line& line) {
     has_vector = has_vector ||
                  std::find(addresses.begin(), addresses.end(), word.address) != addresses.end();
   }
-  const std::string names = std::string(addresses[0]) + ", " + std::string(addresses[1]) + ", " +
-                            std::string(addresses[2]);
+  const bool is_in_space = s.modes.in_space_deg.has_value();
+  const std::string names = is_in_space
+                                ? "A, B, C in space"
+                                : std::string(addresses[0]) + ", " + std::string(addresses[1]) +
+                                      ", " + std::string(addresses[2]);
   if (!s.modes.is_oriented()) {
     if (has_vector)
       return refuse(names + " without tool-centre control",

@@ -52,10 +52,6 @@ cl::Outcome run_function(State& s, const Line& line) {
     return refuse("FUNCTION" + std::string(text.substr(0, 24)) + " is not run here", kMovesByCam,
                   "FUNCTION");
   }
-  if (mentions(text, "AXIS SPAT")) {
-    return refuse("FUNCTION TCPM with angles in space (AXIS SPAT)",
-                  "output AXIS POS, or LN with TX TY TZ");
-  }
   if (mentions(text, "CENTER")) {
     return refuse("FUNCTION TCPM whose points are those of the ball's centre (REFPNT)",
                   "output the points of the tip");
@@ -67,7 +63,9 @@ cl::Outcome run_function(State& s, const Line& line) {
   }
   using Between = Orientation::Between;
   const bool is_circle = mentions(text, "PATHCTRL VECTOR");
-  return switch_on(s, line, is_circle ? Between::kGreatCircle : Between::kEvenJoints);
+  auto done = switch_on(s, line, is_circle ? Between::kGreatCircle : Between::kEvenJoints);
+  if (mentions(text, "AXIS SPAT")) s.modes.in_space_deg.emplace();
+  return done;
 }
 
 /// CYCL DEF 9.1 DWELL 0.500, and what of the other cycles says nothing about where.
@@ -173,6 +171,9 @@ cl::Outcome run_words(State& s, const Line& line) {
   if (translated.retracts) {
     if (auto done = run_retract(s, line, iso); !done) return done;
     return act_after(s, iso);
+  }
+  if (!translated.is_machine_position) {
+    if (auto done = take_angles_in_space(s, iso); !done) return done;
   }
   const bool moves = std::any_of(iso.words.begin(), iso.words.end(), is_of_motion);
   const bool is_motion = statement != "STOP" && statement != "M" && statement != "TOOL CALL";

@@ -57,7 +57,41 @@ void move_word(Line& to, const Word& word, std::string_view address) {
 cl::Outcome switch_on(State& s, const Line& line, Orientation::Between between) {
   s.modes.orientation.transformation = Orientation::Transformation::kOn;
   s.modes.orientation.between = between;
+  s.modes.in_space_deg.reset();
   return set_control(s, line, s.axes ? Control::kRotary : Control::kVector);
+}
+
+cl::Outcome take_angles_in_space(State& s, Line& iso) {
+  constexpr std::array<std::string_view, 3> kAngles = {"A", "B", "C"}, kAxis = {"TX", "TY", "TZ"};
+  if (!s.modes.is_oriented() || !s.modes.in_space_deg) return {};
+  auto& deg = *s.modes.in_space_deg;
+  bool has_any = false;
+  for (std::size_t k = 0; k < kAngles.size(); ++k) {
+    const Word* const word = iso.find(kAngles[k]);
+    if (word == nullptr) continue;
+    if (word->distance_mode != Word::DistanceMode::kModal || iso.find(kAxis[k]) != nullptr) {
+      return refuse("an angle in space (AXIS SPAT) that is incremental, or beside a vector",
+                    "output A, B and C as they are");
+    }
+    deg[k] = word->number;
+    has_any = true;
+  }
+  if (!has_any) return {};
+  if (!deg[0] || !deg[1] || !deg[2]) {
+    return refuse("the first block with angles in space (AXIS SPAT) needs all of A, B and C",
+                  "output them, zeros too");
+  }
+  const Vector3 tool = turned({{2, *deg[2]}, {1, *deg[1]}, {0, *deg[0]}}).rotation.col(2);
+  std::erase_if(iso.words, [&](const Word& word) {
+    return std::find(kAngles.begin(), kAngles.end(), word.address) != kAngles.end();
+  });
+  for (std::size_t k = 0; k < kAxis.size(); ++k) {
+    Word word;
+    word.number = tool[static_cast<Eigen::Index>(k)];
+    word.has_point = true;
+    move_word(iso, word, kAxis[k]);
+  }
+  return {};
 }
 
 cl::Outcome switch_off(State& s, const Line& line) {

@@ -21,6 +21,9 @@ struct Translated {
 /// A word under another address.
 void move_word(Line& to, const Word& word, std::string_view address);
 
+/// Under AXIS SPAT: A, B and C of a line become the tool axis, as TX, TY and TZ give it.
+[[nodiscard]] cl::Outcome take_angles_in_space(State& s, Line& iso);
+
 /// TCPM and M128, by rotary words where the machine is known, until FUNCTION RESET TCPM and M129.
 [[nodiscard]] cl::Outcome switch_on(State& s, const Line& line, Orientation::Between between);
 [[nodiscard]] cl::Outcome switch_off(State& s, const Line& line);
