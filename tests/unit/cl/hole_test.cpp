@@ -199,14 +199,15 @@ TEST(Cycle, DeepOfSolidWorksCamPecksByIncr) {
 
 TEST(Cycle, OfHsmCountsItsClearanceFromTheBottom) {
   // Depth 10, clearance 15 above the bottom, that is 5 above the top; rapid to 2 below that.
-  expect_blocks(holes("RAPID\nGOTO/10,0,5\nCYCLE/DRILL, 10, MMPM, 200, 15, RAPTO, 2, DWELL, .5\n"
-                      "GOTO/10,0,0\n",
-                      Dialect::kHsm),
-                {{'R', {10, 0, 5}},
-                 {'R', {10, 0, 3}},
-                 {'F', {10, 0, -10}, 200},
-                 {'D', {}, .5},
-                 {'R', {10, 0, 5}}});
+  expect_blocks(
+      holes("RAPID\nGOTO/10,0,5.003\nCYCLE/DRILL, 10, MMPM, 200, 15, RAPTO, 2, DWELL, .5\n"
+            "GOTO/10,0,0\n",
+            Dialect::kHsm),
+      {{'R', {10, 0, 5.003}},
+       {'R', {10, 0, 3}},
+       {'F', {10, 0, -10}, 200},
+       {'D', {}, .5},
+       {'R', {10, 0, 5}}});
 }
 
 TEST(Cycle, OfHsmWhoseToolIsNotAtItsClearanceIsRefused) {

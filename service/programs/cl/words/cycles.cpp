@@ -12,6 +12,7 @@ namespace meridian::cl {
 namespace {
 
 constexpr double kLevelTolerance_mm = 1e-3;  // the last digit that CAM systems write
+constexpr double kSumTolerance_mm = 5e-3;    // of a level that is the sum of several numbers
 constexpr double kSameDirection = 1e-9;      // of unit vectors
 
 Outcome rapid_to(Modal& m, const Vector3& tip, const Vector3& axis, std::uint32_t line) {
@@ -38,7 +39,8 @@ Outcome check_first_level(Modal& m, const Vector3& top, double retract_mm, std::
   const bool is_shown = is_hsm || m.dialect.dialect() == Dialect::kSolidWorks;
   if (!is_shown || m.holes_of_cycle > 0) return {};
   const double level = m.axis.in_w.dot(m.path.tip() - top);
-  if (std::abs(level - retract_mm) <= kLevelTolerance_mm) return {};
+  const double tolerance_mm = is_hsm ? kSumTolerance_mm : kLevelTolerance_mm;
+  if (std::abs(level - retract_mm) <= tolerance_mm) return {};
   const std::string text = "the tool stands " + short_number(level) +
                            " mm above the first hole, not at the " + short_number(retract_mm) +
                            " mm to which the cycle retracts";
