@@ -5,50 +5,10 @@
 
 #include <array>
 
-#include "read_text.hpp"
+#include "hole_blocks.hpp"
 
 namespace meridian::cl {
 namespace {
-
-constexpr double kTight_mm = 1e-9;
-
-/// A block worked out by hand: R rapid, F feed (mm/min), D dwell (s), S spindle.
-struct Want {
-  char kind;
-  Array3 tip;
-  double value = 0;
-};
-
-void expect_blocks(const std::vector<ClBlock>& got, const std::vector<Want>& want) {
-  ASSERT_EQ(got.size(), want.size());
-  for (std::size_t i = 0; i < want.size(); ++i) {
-    const ClBlock& b = got[i];
-    const BlockKind kind = want[i].kind == 'R'   ? BlockKind::kRapid
-                           : want[i].kind == 'F' ? BlockKind::kCut
-                           : want[i].kind == 'D' ? BlockKind::kDwell
-                                                 : BlockKind::kAuxiliary;
-    EXPECT_EQ(b.kind, kind) << i;
-    if (kind == BlockKind::kCut) {
-      EXPECT_NEAR(b.feed * 60, want[i].value, 1e-9) << i;
-    }
-    if (kind == BlockKind::kDwell) {
-      EXPECT_NEAR(b.value, want[i].value, 1e-12) << i;
-    }
-    if (!is_motion(b.kind)) continue;
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(b.tip_mm[k], want[i].tip[k], kTight_mm) << i;
-  }
-}
-
-/// Blocks behind those of `head`, which moves to the first position.
-std::vector<ClBlock> holes(const std::string& body, Dialect dialect = Dialect::kUnknown) {
-  ClReaderOptions options;
-  if (dialect != Dialect::kUnknown) options.dialect = dialect;
-  const auto read = read_body("RAPID\nGOTO/0,0,50\n" + body, options);
-  EXPECT_EQ(read.error, "");
-  std::vector<ClBlock> out;
-  for (std::size_t i = 1; i + 1 < read.blocks.size(); ++i) out.push_back(read.blocks[i]);
-  return out;
-}
 
 TEST(Cycle, DrillOfNxGoesBackToItsRetractLevel) {
   expect_blocks(holes("CYCLE/DRILL,RAPTO,3.0,FEDTO,-20.0,RTRCTO,10.0,MMPM,250.\n"
@@ -195,62 +155,6 @@ TEST(Cycle, DeepOfSolidWorksCamPecksByIncr) {
                          {'R', {10, 0, -2}},
                          {'F', {10, 0, -6}, 300},
                          {'R', {10, 0, 50}}});
-}
-
-TEST(Cycle, OfHsmCountsItsClearanceFromTheBottom) {
-  // Depth 10, clearance 15 above the bottom, that is 5 above the top; rapid to 2 below that.
-  expect_blocks(
-      holes("RAPID\nGOTO/10,0,5.003\nCYCLE/DRILL, 10, MMPM, 200, 15, RAPTO, 2, DWELL, .5\n"
-            "GOTO/10,0,0\n",
-            Dialect::kHsm),
-      {{'R', {10, 0, 5.003}},
-       {'R', {10, 0, 3}},
-       {'F', {10, 0, -10}, 200},
-       {'D', {}, .5},
-       {'R', {10, 0, 5}}});
-}
-
-TEST(Cycle, OfHsmWhoseToolIsNotAtItsClearanceIsRefused) {
-  // The same words where the point is the bottom of a hole: it would be drilled twice as deep.
-  const auto read =
-      read_body("RAPID\nGOTO/10,0,15\nCYCLE/DRILL, 10, MMPM, 200, 15\nGOTO/10,0,-10\nCYCLE/OFF\n",
-                written_by(Dialect::kHsm));
-  EXPECT_NE(read.error.find("part.apt:6"), std::string::npos) << read.error;
-  EXPECT_NE(read.error.find("--dialect fusion"), std::string::npos) << read.error;
-}
-
-TEST(Cycle, OfFusionGivesTheBottomOfAHoleAndItsClearanceAsAZ) {
-  // Top at z = 2: depth 10 down to -8, clearance at z = 15, rapid to 9 below that.
-  const auto blocks = holes(
-      "CYCLE/DRILL, 10, MMPM, 200, 15, RAPTO, 9\nFEDRAT/200,MMPM\nGOTO/10,0,-8\nGOTO/20,0,-12\n"
-      "CYCLE/OFF\n",
-      Dialect::kFusion);
-  expect_blocks(blocks, {{'R', {10, 0, 50}},
-                         {'R', {10, 0, 6}},
-                         {'F', {10, 0, -8}, 200},
-                         {'R', {10, 0, 15}},
-                         {'R', {20, 0, 15}},
-                         {'R', {20, 0, 6}},
-                         {'F', {20, 0, -12}, 200},
-                         {'R', {20, 0, 15}}});
-}
-
-TEST(Cycle, OfFusionInsideThePartOrAlongATiltedAxisIsRefused) {
-  const std::string cycle = "RAPID\nGOTO/0,0,15\nCYCLE/DRILL, 10, MMPM, 200, 15, RAPTO, 9\n";
-  for (const char* const point : {"GOTO/10,0,0\n", "GOTO/10,0,-8,.6,0,.8\n"}) {
-    const auto read = read_body(cycle + point, written_by(Dialect::kFusion));
-    EXPECT_NE(read.error.find("part.apt:6"), std::string::npos) << point << read.error;
-  }
-}
-
-TEST(Cycle, WithAClearanceOfUnknownOriginBesideItsDepthIsRefused) {
-  const auto at_rapid_level = read_body(
-      "GOTO/0,0,50\nCYCLE/DRILL, DEEP, FEDTO, 9, INCR, 3, MMPM, 90, CLEAR, 15, RAPTO, 2\n"
-      "GOTO/10,0,0\n");
-  EXPECT_NE(at_rapid_level.error.find("CLEAR beside FEDTO"), std::string::npos);
-  expect_blocks(
-      holes("CYCLE/DRILL, FEDTO, 9, MMPM, 90, CLEAR, 15, RTRCTO, 20, RAPTO, 2\nGOTO/10,0,0\n"),
-      {{'R', {10, 0, 50}}, {'R', {10, 0, 2}}, {'F', {10, 0, -9}, 90}, {'R', {10, 0, 20}}});
 }
 
 TEST(Cycle, ReamAndBoreFeedOut) {
