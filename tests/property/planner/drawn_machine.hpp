@@ -118,6 +118,13 @@ class DrawnMachine {
     return rotary(-half, half);
   }
 
+  /// A third of them go no farther than some degrees, or not at all, past the pole.
+  Drive tilt() {
+    double low = -uniform(60, 200), high = uniform(60, 200);
+    if (chance(0.35)) (chance(0.5) ? low : high) *= chance(0.2) ? 0 : uniform(0, 0.3);
+    return rotary(low, high);
+  }
+
   Vector3 misaligned(const Vector3& axis) {
     if (!is_measured_) return axis;
     const double off = log_uniform(1e-6, 1e-2);
@@ -171,8 +178,7 @@ class DrawnMachine {
         array_of((chance(0.3) ? -1.0 : 1.0) * misaligned(is_c ? c_axis : tilt_axis())));
     put("point_mm", array_of({uniform(-80, 80), uniform(-80, 80),
                               is_table ? uniform(-150, 50) : gauge + uniform(0, 200)}));
-    if (is_c) return put_drive(turntable());
-    put_drive(rotary(-uniform(70, 200), uniform(70, 200)));
+    put_drive(is_c ? turntable() : tilt());
   }
 
   void put_lai() {
@@ -191,7 +197,7 @@ class DrawnMachine {
     text_ << "[joints.theta1]\nnc_word = \"C\"\n";
     put_drive(turntable());
     text_ << "[joints.theta2]\nnc_word = \"B\"\n";
-    put_drive(rotary(-uniform(60, 120), uniform(60, 120)));
+    put_drive(tilt());
   }
 
   void put_robot(bool is_five) {
@@ -200,6 +206,10 @@ class DrawnMachine {
     put("shoulder_height_mm", uniform(100, 800));
     put("upper_arm_mm", arm);
     put("forearm_mm", arm * uniform(0.7, 1.3));
+    if (chance(0.7)) {  // the others have the part at the base, and the shoulder's singularity
+      const double azimuth = uniform(-3, 3), off = arm * uniform(0.4, 1.2);
+      part_ = {off * std::cos(azimuth), off * std::sin(azimuth), arm * uniform(-0.3, 0.3)};
+    }
     put("wrist_mm", uniform(20, 250));
     const std::array<const char*, 3> five = {"pitch", "tilt", nullptr},
                                      six = {"roll", "bend", "spin"};
@@ -229,7 +239,8 @@ class DrawnMachine {
       put("retract_mm", uniform(5, 200));
     }
     text_ << "[frame]\n";
-    put("origin_mm", array_of({uniform(-50, 50), uniform(-50, 50), uniform(-50, 50)}));
+    const Vector3 beside{uniform(-50, 50), uniform(-50, 50), uniform(-50, 50)};
+    put("origin_mm", array_of(part_ + beside));
     const double turn = chance(0.5) ? 0 : 1;
     put("rotation_deg",
         array_of({turn * uniform(-20, 20), turn * uniform(-20, 20), uniform(-180, 180)}));
@@ -238,6 +249,7 @@ class DrawnMachine {
   std::mt19937_64 engine_;
   std::ostringstream text_;
   bool is_measured_ = false;
+  Vector3 part_ = Vector3::Zero();  ///< middle of where it may lie, mm
 };
 
 /// The machine of a seed; none where the loader refuses it.

@@ -300,7 +300,8 @@ TEST(PoleLinger, WhereNoWayLeadsOffTheFirstBlockThatCannotGoOnIsRefusedByName) {
     const SmoothTrace trace = plan_smooth(model, blocks, joints_of(model, blocks[0]));
     ASSERT_EQ(trace.last.status, PlanStatus::kRefused);
     const BlockReject& reject = trace.last.reject;
-    EXPECT_EQ(reject.code, RejectCode::kBranch);
+    // What it comes to is tried from rest to rest, where C shows to run out of travel.
+    EXPECT_EQ(reject.code, is_from_rest ? RejectCode::kBranch : RejectCode::kTravelBetween);
     const auto last = trace.times.empty() ? 0 : trace.times.back().sequence;
     EXPECT_GE(reject.sequence, std::max<std::uint64_t>(1, last));
     EXPECT_LE(reject.sequence, is_from_rest ? 1U : 12U + 150U) << "no motion belongs to it";

@@ -23,8 +23,26 @@ void BlockWindow::begin(const LookAheadSlack& slack) noexcept {
 
 void BlockWindow::keep(const ClBlock& block) noexcept {
   if (!is_used_) return;
+  const bool waits = waiting() > 0;
   push(block);
-  pop();
+  if (!waits) pop();
+}
+
+const ClBlock* BlockWindow::find(std::uint64_t sequence) const noexcept {
+  const std::int64_t n = find_first(sequence), end = blocks_.end_index();
+  const bool is_there = n < end && blocks_[n].sequence == sequence;
+  return is_there && end - n <= static_cast<std::int64_t>(kWaiting) ? &blocks_[n] : nullptr;
+}
+
+const ClBlock* BlockWindow::find_motion_ahead(std::uint64_t sequence) const noexcept {
+  for (std::int64_t n = find_first(sequence); n-- > blocks_.begin_index();) {
+    if (is_motion(blocks_[n].kind)) return &blocks_[n];
+  }
+  return nullptr;
+}
+
+void BlockWindow::go_back_to(std::uint64_t sequence) noexcept {
+  next_ = std::min(next_, find_first(sequence));
 }
 
 std::int64_t BlockWindow::find_first(std::uint64_t sequence) const noexcept {

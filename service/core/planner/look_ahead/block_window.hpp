@@ -50,8 +50,14 @@ class BlockWindow : public PoleLookAhead {
   /// Only where less than kWaiting wait.
   void push(const ClBlock& block) noexcept { blocks_.push_over_oldest(block); }
   void pop() noexcept { ++next_; }
-  /// `block` was planned without having to wait; none waits.
+  /// `block` was planned without having to wait; where others wait by now, it waits too.
   void keep(const ClBlock& block) noexcept;
+  /// Block `sequence`, if it is there and may wait again with all behind it; else nullptr.
+  [[nodiscard]] const ClBlock* find(std::uint64_t sequence) const noexcept;
+  /// The last block ahead of `sequence` that moves the tool; nullptr: it is not there.
+  [[nodiscard]] const ClBlock* find_motion_ahead(std::uint64_t sequence) const noexcept;
+  /// Block `sequence`, which find() gives, and those behind it wait again.
+  void go_back_to(std::uint64_t sequence) noexcept;
 
   void ask(const Start& start, std::span<const RouteAhead> routes) noexcept override;
   [[nodiscard]] bool look() noexcept override;

@@ -29,6 +29,7 @@ void SmoothPlanner::begin(const JointVector& at_rest, double tool_length_mm, std
   }
   w.raise.begin(tool_length_mm);
   w.refusal.reset();
+  w.retried.reset();
   w.decided = Workspace::Decided::kNothing;
   w.window.begin(w.slack());
   w.looked_at = 0;
@@ -106,7 +107,8 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
     if (ends) w.run.finish();
     const Status status = w.publish(writer);
     if (w.refusal) return *w.refusal;
-    if (status == Status::kNoRoom || (ends && status != Status::kDone) || w.awaits_ahead())
+    if (!w.is_running() || w.run.has_fault() || status == Status::kNoRoom ||
+        (ends && status != Status::kDone) || w.awaits_ahead())
       return {PlanStatus::kNoRoom, {}, 0, {}};
     if (ends) {
       w.end_run();
@@ -120,10 +122,12 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
       w.raise.rest();
       w.plain.set_feed_factor(w.raise.next(block.sequence, writer.feed_override(), 0).label);
     }
-    const PlanResult result = w.plain.plan(block, writer);
+    const bool is_retried = w.retried && block.sequence == w.retried->sequence;
+    PlanResult result = w.plain.plan(is_retried ? w.rest_of(block) : block, writer);
     const bool waits = result.status == PlanStatus::kNoRoom;
     w.decided = waits ? Workspace::Decided::kAtRestWithFactor : Workspace::Decided::kNothing;
     if (result.status == PlanStatus::kRefused) {
+      if (is_retried) result.reject = *w.retried;
       w.refuse(result);
     } else if (result.status == PlanStatus::kOk) {
       w.note(result.rewind);
@@ -140,7 +144,7 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
   w.run.take(*cut);
   if (!w.is_smooth()) w.run.finish();
   w.pose = w.programmed = {to_vector(cut->tip_mm), to_vector(cut->axis)};
-  (void)w.publish(writer);
+  (void)w.publish(writer, &block);
   return w.refusal.value_or(PlanResult{});
 }
 

@@ -127,7 +127,8 @@ SmoothRun::Status SmoothRun::publish_window(MotionWriter& writer) noexcept {
     }
     const Status status = prepare(writer.feed_override());
     if (has_window_) continue;
-    const bool is_end = status == Status::kDone || status == Status::kRewind;
+    const bool is_end =
+        status == Status::kDone || status == Status::kRewind || status == Status::kFailed;
     return is_end && !is_end_certain(writer) ? Status::kNoRoom : status;
   }
 }
@@ -151,7 +152,10 @@ SmoothRun::Status SmoothRun::prepare(double feed_override) noexcept {
     }
     const bool is_at_rewind = supply_ == Supply::kHeld;
     if (is_feed_finished() && feed_.is_done()) {
-      if (has_fault()) return Status::kFailed;
+      if (has_fault()) {
+        span_joints_ = joints_at_rest();
+        return Status::kFailed;
+      }
       return is_at_rewind ? Status::kRewind : Status::kDone;
     }
     if (is_at_rewind) return Status::kNoRoom;  // every cell is there: windows go on coming
@@ -330,14 +334,24 @@ bool SmoothRun::write(MotionWriter& writer) noexcept {
 /// On the pole the redundant joint is held where it came from: it is followed there, as the cycle
 /// does, which rests where the last of its places led. A span that leaves reach ahead of its end,
 /// where a run that is refused rests, has the last joints that there are.
-JointVector SmoothRun::joints_at_end(const PathPiece& piece) const noexcept {
+JointVector SmoothRun::joints_on(const PathPiece& piece, double end) const noexcept {
   JointVector joints = piece.joints_begin;
   for (double left = 0.1; left > 1e-7; left *= 0.1) {
-    const auto near_end = joints_at(model_, piece, (1 - left) * piece.length, joints);
+    const auto near_end = joints_at(model_, piece, (1 - left) * end, joints);
     if (near_end.status != SolveStatus::kUnreachable) joints = near_end.q;
   }
-  const auto end = joints_at(model_, piece, piece.length, joints);
-  return end.status == SolveStatus::kUnreachable ? joints : end.q;
+  const auto at_end = joints_at(model_, piece, end, joints);
+  return at_end.status == SolveStatus::kUnreachable ? joints : at_end.q;
+}
+
+JointVector SmoothRun::joints_at_rest() const noexcept {
+  const CellGrid& grid = feed_.grid();
+  if (staged_spans_ == 0 || grid.last() == grid.first()) return span_joints_;
+  const FeedCell& last = grid[grid.last() - 1];
+  PathPiece piece = make_spline(spans_[static_cast<std::int64_t>(staged_spans_ - 1)]);
+  piece.tool_length_mm = start_.tool_length_mm;
+  piece.joints_begin = last_begin_;
+  return joints_on(piece, std::min(last.x + last.h, piece.length));
 }
 
 bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept {
@@ -348,7 +362,8 @@ bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept 
     piece.epoch = start_.epoch;
     piece.tool_length_mm = start_.tool_length_mm;
     piece.joints_begin = joints_at(model_, piece, 0.0, span_joints_).q;
-    piece.joints_end = joints_at_end(piece);
+    piece.joints_end = joints_on(piece, piece.length);
+    last_begin_ = piece.joints_begin;
     span_joints_ = piece.joints_end;
     if (!writer.stage(piece)) return false;
   }

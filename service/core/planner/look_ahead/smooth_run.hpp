@@ -149,7 +149,10 @@ class SmoothRun : public RewindTrial {
   [[nodiscard]] bool is_end_certain(const MotionWriter& writer) const noexcept;
   void follow_tail(MotionWriter& writer) noexcept;
   [[nodiscard]] bool write(MotionWriter& writer) noexcept;
-  [[nodiscard]] JointVector joints_at_end(const PathPiece& piece) const noexcept;
+  /// On `piece` at `end`, followed from its begin.
+  [[nodiscard]] JointVector joints_on(const PathPiece& piece, double end) const noexcept;
+  /// Where a run that failed rests: ahead of the end of the last span that is in the port.
+  [[nodiscard]] JointVector joints_at_rest() const noexcept;
   [[nodiscard]] bool stage_spans(MotionWriter& writer, std::uint64_t until) noexcept;
   [[nodiscard]] TimePiece make_piece(const FeedPiece& piece, bool is_tail) const noexcept;
   [[nodiscard]] bool stage_pieces(MotionWriter& writer, std::span<const FeedPiece> pieces,
@@ -167,7 +170,8 @@ class SmoothRun : public RewindTrial {
   IndexRing<BlockEnd> ends_;    ///< of blocks, that no span is marked with yet
   RunStart start_;
   std::uint64_t staged_spans_ = 0;  ///< path pieces of spans before this one are in the port
-  JointVector span_joints_{};       ///< at the end of the last of them
+  JointVector last_begin_{};        ///< at the begin of the last of them
+  JointVector span_joints_{};       ///< at its end, or where a run that failed rests on it
   std::uint32_t window_ = 0;
   std::array<OpenWindow, MotionReader::kRemembered + 2> open_;
   bool has_window_ = false;  ///< feed_.window() waits for room

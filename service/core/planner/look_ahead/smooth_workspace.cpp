@@ -10,7 +10,6 @@
 #include "meridian/geometry/unit_vector.hpp"
 #include "meridian/kinematics/solve_driven.hpp"
 #include "meridian/path/build_piece.hpp"
-#include "service/core/planner/look_ahead/fault_code.hpp"
 #include "service/core/planner/singular/robot/robot_pass.hpp"
 
 namespace meridian {
@@ -38,6 +37,7 @@ BandTolerance SmoothPlanner::Workspace::tolerance() const noexcept {
 std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const noexcept {
   if (!is_smooth() && model.family != MachineFamily::kRobot) return {};
   if (block.kind != BlockKind::kCut || plain.junction().is_first) return {};
+  if (retried && block.sequence == retried->sequence) return {};
   if (block.feed_meaning == FeedMeaning::kNone || !(block.feed > 0)) return {};
   const auto unit = UnitVector3::near_unit(to_vector(block.axis));
   if (!unit || !to_vector(block.tip_mm).allFinite()) return {};
@@ -143,17 +143,20 @@ void SmoothPlanner::Workspace::end_run() noexcept {
   running = Running::kNone;
 }
 
-SmoothRun::Status SmoothPlanner::Workspace::publish(MotionWriter& writer) noexcept {
+SmoothRun::Status SmoothPlanner::Workspace::publish(MotionWriter& writer,
+                                                    const ClBlock* last) noexcept {
   for (;;) {
     const SmoothRun::Status status = run.publish(writer);
     if (status == SmoothRun::Status::kRewind) {
       if (!refusal && rewind(writer)) continue;
       return refusal ? SmoothRun::Status::kFailed : SmoothRun::Status::kNoRoom;
     }
-    if (run.has_fault() && !refusal) {
-      BlockReject reject = run.faulty_block();
-      reject.code = code_of(run.fault().kind);
-      refuse({PlanStatus::kRefused, reject, 0, {}});
+    if (!run.has_fault() || refusal) return status;
+    if (!may_retry(last)) {
+      refuse({PlanStatus::kRefused, fault_of_run(), 0, {}});
+    } else if (last == nullptr && status == SmoothRun::Status::kFailed) {
+      go_back();
+      return SmoothRun::Status::kNoRoom;
     }
     return status;
   }

@@ -94,8 +94,20 @@ struct SmoothPlanner::Workspace {
   [[nodiscard]] bool is_on_pole(const Vector3& axis) const noexcept;
   void begin_run(const ClBlock& cut) noexcept;
   void end_run() noexcept;
-  /// Publishes what is ready of the run.
-  [[nodiscard]] SmoothRun::Status publish(MotionWriter& writer) noexcept;
+  /// What the run says of the block that it cannot follow.
+  [[nodiscard]] BlockReject fault_of_run() const noexcept;
+  /// Whether that block may be done from rest to rest: a line whose end has a solution inside
+  /// travel, and that is not tried yet. `last`: the block that the run took last.
+  [[nodiscard]] bool may_retry(const ClBlock* last) const noexcept;
+  /// The run rests ahead of that block: it is to be done from rest to rest, and what is behind it
+  /// planned anew.
+  void go_back() noexcept;
+  /// `block` from where the tool rests; of its time what is left.
+  [[nodiscard]] ClBlock rest_of(ClBlock block) const noexcept;
+  /// Publishes what is ready of the run, and goes back from a fault once it rests; not behind
+  /// `last`, which the run has just taken.
+  [[nodiscard]] SmoothRun::Status publish(MotionWriter& writer,
+                                          const ClBlock* last = nullptr) noexcept;
   /// Turns the redundant joint back at the rest that the run came to; false: no room in the port,
   /// blocks ahead are missing, or refused.
   [[nodiscard]] bool rewind(MotionWriter& writer) noexcept;
@@ -152,7 +164,8 @@ struct SmoothPlanner::Workspace {
   Intake intake = Intake::kOpen;
   Running running = Running::kNone;
   Decided decided = Decided::kNothing;
-  std::optional<PlanResult> refusal;          ///< the program cannot go on
+  std::optional<PlanResult> refusal;   ///< the program cannot go on
+  std::optional<BlockReject> retried;  ///< the last block that is done at rest for a run's fault
   IndexRing<RelaxedAxis> plain_relaxed_axes;  ///< of blocks from rest to rest
   IndexRing<Rewind> rewinds;
   std::size_t looked_at = 0;        ///< blocks of the begin

@@ -56,28 +56,12 @@ void add_to_approach(const Staging::Mark& begin, const Staging& staged,
 
 }  // namespace
 
-double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
-                              double tool_length_mm, double whole_mm) const noexcept {
-  if (!(whole_mm > 0)) return 0;
-  double share = 1;
-  if (redundant_joint(model_) < 0) {
-    // The joints of an arm bend on the way up: as far as the whole path stays in reach and travel.
-    constexpr int kSteps = 16;
-    JointVector before = joints;
-    for (int n = 1; n <= kSteps; ++n) {
-      const auto at = solve_near(lifted(pose, whole_mm * n / kSteps), joints, tool_length_mm);
-      const bool is_free = at.status == SolveStatus::kOk &&
-                           first_joint_outside_travel(model_, at.q, 0) < 0 &&
-                           keep_out_between(model_.keep_out, before, at.q).box < 0 &&
-                           tip_axis_outside(model_, tool_length_mm, at.q) < 0;
-      before = at.q;
-      if (is_free) continue;
-      share = static_cast<double>(n - 1) / kSteps;
-      break;
-    }
-    return share * whole_mm > kNoClearance_mm ? share * whole_mm : 0;
-  }
+Router::Lift Router::find_lift(const ToolPose& pose, const JointVector& joints,
+                               double tool_length_mm, double whole_mm) const noexcept {
+  if (!(whole_mm > 0)) return {0, joints};
+  if (redundant_joint(model_) < 0) return find_lift_of_arm(pose, joints, tool_length_mm, whole_mm);
   // With the axis fixed joints and drives of a machine with linear joints are linear in the lift.
+  double share = 1;
   const auto at = solve_near(lifted(pose, whole_mm), joints, tool_length_mm);
   const LimitedVector from = limited_of(model_, joints), to = limited_of(model_, at.q);
   for (int i = 0; i < limited_count(model_); ++i) {
@@ -94,7 +78,27 @@ double Router::find_clearance(const ToolPose& pose, const JointVector& joints,
                                       tip_over_base(model_, tool_length_mm, at.q)));
   }
   const double clearance = std::max(0.0, share) * whole_mm;
-  return clearance > kNoClearance_mm ? clearance : 0;
+  if (!(clearance > kNoClearance_mm)) return {0, joints};
+  return {clearance, solve_near(lifted(pose, clearance), joints, tool_length_mm).q};
+}
+
+/// The joints of an arm bend on the way up: as far as the whole path stays in reach and travel.
+Router::Lift Router::find_lift_of_arm(const ToolPose& pose, const JointVector& joints,
+                                      double tool_length_mm, double whole_mm) const noexcept {
+  constexpr int kSteps = 16;
+  const int branch = branch_of(pose, joints, tool_length_mm);
+  Lift lift{0, joints};
+  for (int n = 1; n <= kSteps; ++n) {
+    const double above = whole_mm * n / kSteps;
+    const auto at = solve(model_, tool_length_mm, lifted(pose, above), branch, lift.joints);
+    const bool is_free = at.status == SolveStatus::kOk &&
+                         first_joint_outside_travel(model_, at.q, 0) < 0 &&
+                         keep_out_between(model_.keep_out, lift.joints, at.q).box < 0 &&
+                         tip_axis_outside(model_, tool_length_mm, at.q) < 0;
+    if (!is_free) break;
+    lift = {above, at.q};
+  }
+  return lift.mm > kNoClearance_mm ? lift : Lift{0, joints};
 }
 
 PathFault Router::find_tip_fault(double tool_length_mm, const JointVector& joints) const noexcept {
@@ -111,7 +115,7 @@ PathFault Router::retract(const ClBlock& block, PlanCursor& cursor, Staging& out
   retracted_.from = cursor.joints;
   left_ = rest;
   cursor.has_retracted = true;
-  const double up = find_clearance(rest, cursor.joints, cursor.tool_length_mm, model_.clearance_mm);
+  const double up = find_lift(rest, cursor.joints, cursor.tool_length_mm, model_.clearance_mm).mm;
   if (!(up > 0)) return {};
   const Job rapid{block, MotionKind::kApproach, 0, 0};
   const PathFault fault = run_lift(make_line(rest, lifted(rest, up)), rapid, cursor, out);
@@ -127,7 +131,7 @@ PathFault Router::lift_longer_tool(const Job& rapid, PlanCursor& cursor, Staging
   const double min_above = retracted_.retract - kNoClearance_mm;
   if (above >= min_above) return {};
   const double missing = model_.clearance_mm - above;
-  const double up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, missing);
+  const double up = find_lift(cursor.pose, cursor.joints, cursor.tool_length_mm, missing).mm;
   if (above + up < min_above) {
     const auto at = solve_near(lifted(cursor.pose, missing), cursor.joints, cursor.tool_length_mm);
     if (const int box = keep_out_between(model_.keep_out, cursor.joints, at.q).box; box >= 0) {
@@ -150,31 +154,29 @@ PathFault Router::approach_by(const ToolPose& target, const Candidate& candidate
   PathFault fault;
   const double apart = largest_difference(candidate.joints, cursor.joints);
   const double clearance = model_.clearance_mm;
-  double up = 0, down = 0;
+  double up = 0;
+  Lift down{0, candidate.joints};
   if (apart > kNearby) {
     if (cursor.has_retracted) {
       fault = lift_longer_tool(rapid, cursor, out);
       if (is_fault(fault)) return fault;
     } else {
-      up = find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, clearance);
+      up = find_lift(cursor.pose, cursor.joints, cursor.tool_length_mm, clearance).mm;
     }
     if (up > 0) {
       fault = run_lift(make_line(cursor.pose, lifted(cursor.pose, up)), rapid, cursor, out);
       if (is_fault(fault)) return fault;
     }
-    down = find_clearance(target, candidate.joints, cursor.tool_length_mm, clearance);
+    down = find_lift(target, candidate.joints, cursor.tool_length_mm, clearance);
   }
   last_approach_.retract = up;
-  last_approach_.descent = down;
-  const JointVector over =
-      down > 0 ? solve_near(lifted(target, down), candidate.joints, cursor.tool_length_mm).q
-               : candidate.joints;
-  if (largest_difference(over, cursor.joints) > kThere) {
-    fault = run(make_joint_move(cursor.joints, over, rotary), rapid, kNoPart, cursor, out);
+  last_approach_.descent = down.mm;
+  if (largest_difference(down.joints, cursor.joints) > kThere) {
+    fault = run(make_joint_move(cursor.joints, down.joints, rotary), rapid, kNoPart, cursor, out);
     if (is_fault(fault)) return fault;
   }
-  if (down > 0) {
-    fault = run_lift(make_line(lifted(target, down), target), job, cursor, out);
+  if (down.mm > 0) {
+    fault = run_lift(make_line(lifted(target, down.mm), target), job, cursor, out);
   }
   return fault;
 }

@@ -114,7 +114,7 @@ PathFault Router::rewind(const ClBlock& block, const RewindTarget& target, PlanC
   const Job job{block, MotionKind::kRewind, model_.approach_feed_mm_per_s, 0};
   Job rapid = job;
   rapid.feed_mm_per_s = 0;
-  if (find_clearance(cursor.pose, cursor.joints, cursor.tool_length_mm, off) < off) {
+  if (find_lift(cursor.pose, cursor.joints, cursor.tool_length_mm, off).mm < off) {
     return {PathFault::Kind::kTravel, -1, 0};
   }
   const ToolPose rest = cursor.pose;

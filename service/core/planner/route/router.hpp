@@ -242,9 +242,16 @@ class Router {
   /// Fills in what is known of the route once it is staged from `begin` on.
   void describe_approach(const Candidate& candidate, const Job& job, const PlanCursor& from,
                          const Staging::Mark& begin, const Staging& staged) noexcept;
-  /// How far, up to `whole_mm`, the tool can leave `pose` along its axis inside travel and the tip
-  /// box, and past every keep-out box; 0: not at all.
-  [[nodiscard]] double find_clearance(const ToolPose& pose, const JointVector& joints,
+  /// How far the tool leaves a pose along its axis, and the joints there.
+  struct Lift {
+    double mm = 0;
+    JointVector joints{};
+  };
+  /// The farthest lift from `pose`, up to `whole_mm`, inside travel and the tip box, and past every
+  /// keep-out box; 0: none. It follows the branch that `joints` are on.
+  [[nodiscard]] Lift find_lift(const ToolPose& pose, const JointVector& joints,
+                               double tool_length_mm, double whole_mm) const noexcept;
+  [[nodiscard]] Lift find_lift_of_arm(const ToolPose& pose, const JointVector& joints,
                                       double tool_length_mm, double whole_mm) const noexcept;
   /// Why no solution at `target` may be approached.
   [[nodiscard]] PathFault find_target_fault(const ToolPose& target,

@@ -72,10 +72,35 @@ TEST(BlockWindow, HandsBlocksOutInTheirOrder) {
   EXPECT_EQ(asked.window.first(3)[2].sequence, 2U);
   EXPECT_TRUE(asked.window.first(1).empty()) << "it is planned";
   asked.window.keep(round(9));
-  EXPECT_EQ(asked.window.waiting(), 4U);
+  EXPECT_EQ(asked.window.waiting(), 5U) << "behind those that wait";
   asked.window.begin({});
   EXPECT_EQ(asked.window.waiting(), 0U);
   EXPECT_EQ(asked.window.questions(), 0U);
+}
+
+TEST(BlockWindow, HandsBlocksOutAnewFromOneThatItGoesBackTo) {
+  Asked asked;
+  for (int n = 0; n < 6; ++n) asked.window.keep(round(n));
+  EXPECT_EQ(asked.window.waiting(), 0U);
+  ASSERT_NE(asked.window.find(3), nullptr);
+  EXPECT_EQ(asked.window.find(3)->sequence, 3U);
+  EXPECT_EQ(asked.window.find(6), nullptr) << "not there";
+  ASSERT_NE(asked.window.find_motion_ahead(3), nullptr);
+  EXPECT_EQ(asked.window.find_motion_ahead(3)->sequence, 2U);
+  EXPECT_EQ(asked.window.find_motion_ahead(0), nullptr);
+  asked.window.go_back_to(3);
+  EXPECT_EQ(asked.window.waiting(), 3U);
+  EXPECT_EQ(asked.window.front().sequence, 3U);
+  asked.window.go_back_to(5);
+  EXPECT_EQ(asked.window.front().sequence, 3U) << "back, never on";
+}
+
+TEST(BlockWindow, GoesBackOverNoMoreBlocksThanMayWait) {
+  Asked asked;
+  for (int n = 0; n < 2100; ++n) asked.window.keep(round(n));
+  EXPECT_EQ(asked.window.find(40), nullptr);
+  EXPECT_EQ(asked.window.find(2100 - BlockWindow::kWaiting - 1), nullptr);
+  ASSERT_NE(asked.window.find(2100 - BlockWindow::kWaiting + 1), nullptr);
 }
 
 TEST(BlockWindow, AnswersOnceOnlyOneWayGoesOn) {

@@ -100,6 +100,28 @@ TEST(ApproachLift, OfARobotBesideASingularPlaceIsInPartsTheShortestNextToIt) {
   expect_same(parts_of(0.36, -2.4), {3.0 / 4, 3.0 / 16, 3.0 / 64, 1.0 / 64});
 }
 
+/// The wrist goes by the base axis at 8 mm, and the yaw turns by more than a quarter of a turn:
+/// nearer to where it began is the branch that has the arm over its back.
+TEST(ApproachLift, OfARobotStaysOnItsBranchWhereItGoesByTheBaseAxis) {
+  MachineModel model = robot();
+  const Vector3 axis(-std::sin(0.9), 0, std::cos(0.9)), wrist(15, 8, 1150);
+  const double tool_mm = model.tool_length_mm + 40;
+  const ToolPose pose{wrist - tool_mm * axis - Vector3(850, 0, 250), axis};
+  const Lifted free(model, pose);
+  ASSERT_FALSE(is_fault(free.fault));
+  EXPECT_NEAR(free.lift_mm, kClearance_mm, kRounding);
+  const double turn = free.cursor.joints[robot::kYaw] - free.start[robot::kYaw];
+  ASSERT_GT(std::abs(turn), 2);
+  model.joints[robot::kYaw].limits.travel_max =
+      std::max(free.start[robot::kYaw], free.start[robot::kYaw] + 0.5 * turn);
+  model.joints[robot::kYaw].limits.travel_min =
+      std::min(free.start[robot::kYaw], free.start[robot::kYaw] + 0.5 * turn);
+  const Lifted narrow(model, pose);
+  EXPECT_FALSE(is_fault(narrow.fault));
+  EXPECT_GT(narrow.lift_mm, 0);
+  EXPECT_LT(narrow.lift_mm, 0.7 * kClearance_mm);
+}
+
 TEST(ApproachLift, IsWholeWhereTheTipBoxIsWide) {
   MachineModel model = lai_machine();
   model.clearance_mm = kClearance_mm;

@@ -53,7 +53,26 @@ TEST(Router, LeavesThePoleWithoutATurnWhereTheAzimuthIsThatOfTheJoint) {
   ASSERT_FALSE(is_fault(one.route(cut({40, 0, 0}, Vector3::UnitZ()))));
   ASSERT_FALSE(is_fault(one.route(cut({60, 0, 0}, tilted(0.3, std::numbers::pi)))));
   EXPECT_EQ(one.paths().size(), 1U) << "out on the other branch";
-  EXPECT_EQ(one.cursor.joints[3], one.paths()[0].joints_begin[3]);
+  EXPECT_NEAR(one.cursor.joints[3], one.paths()[0].joints_begin[3], 1e-12);
+}
+
+/// What follows begins on the joints that its begin has, where slides show 1e-9 rad of C.
+TEST(Router, LeavesThePoleOnTheJointsOfItsEndWhereATurnWouldBeTooLittle) {
+  const MachineModel model = bench_machine();
+  for (const double off : {-9e-10, 5e-10}) {
+    Routed one(model);
+    one.stand_at({{0, 0, 0}, tilted(0.3, 0)});
+    ASSERT_FALSE(is_fault(one.route(cut({40, 0, 0}, Vector3::UnitZ()))));
+    one.cursor.joints[3] += off;
+    const ClBlock block = cut({60, 0, 0}, tilted(0.3, 0));
+    ASSERT_FALSE(is_fault(one.route(block)));
+    ASSERT_EQ(one.paths().size(), 1U) << "no turn";
+    const ToolPose end{to_vector(block.tip_mm), to_vector(block.axis)};
+    const JointVector& got = one.cursor.joints;
+    const int branch = got[4] * solve(model, model.tool_length_mm, end, 0, got).q[4] > 0 ? 0 : 1;
+    const JointVector wanted = solve(model, model.tool_length_mm, end, branch, got).q;
+    for (int i = 0; i < 5; ++i) EXPECT_NEAR(got[i], wanted[i], 1e-12) << i;
+  }
 }
 
 TEST(Router, RunsThroughThePoleWhereItPassesInsideTheTolerance) {

@@ -67,8 +67,9 @@ PathFault Router::leave_pole_by(const PathPiece& path, const JointVector& end, c
   turned.joints[free] = end[free];
   const bool is_near = path.axis_turn <= kNearPole_rad;
   if (is_near || is_straight_passage(path, end[free], turned, kPoleDeviation_rad)) {
+    // What is too little for a turn is made on the route: it ends on the joints of its end, exactly.
     const PathFault fault = turn_free(pole, end[free], job, cursor, out);
-    return is_fault(fault) ? fault : run_held(path, cursor.joints[free], job, kWhole, cursor, out);
+    return is_fault(fault) ? fault : run_held(path, end[free], job, kWhole, cursor, out);
   }
   const double near = kNearPole_rad / path.axis_turn;
   const double limit = follow_back(path, end, near, cursor.tool_length_mm);
