@@ -205,7 +205,7 @@ INSTANTIATE_TEST_SUITE_P(
                     SolidWorksFile{"solidworks_manufacture3_top.apt", 31, -9.00161},
                     SolidWorksFile{"solidworks_sacrifice_board.apt", 28, -55}));
 
-TEST(CorpusUnits, FilesWithoutAUnitWordAreReadInTheStationsUnitAndThatIsSaid) {
+TEST(CorpusUnits, FilesWithoutAUnitWordAreReadInTheUnitOfTheirFeedsAndThatIsSaid) {
   const auto path = corpus() / "nx_coremill.cls";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
   std::ifstream in(path, std::ios::binary);
@@ -216,6 +216,7 @@ TEST(CorpusUnits, FilesWithoutAUnitWordAreReadInTheStationsUnitAndThatIsSaid) {
   ASSERT_FALSE(reader.warnings().empty());
   EXPECT_EQ(reader.warnings()[0].line, 10U);
   EXPECT_NE(reader.warnings()[0].message.find("NO UNIT WORD"), std::string::npos);
+  EXPECT_EQ(reader.summary().unit_source, UnitSource::kFeed);
 }
 
 /// Every file but the last byte, line or half of itself is refused or said to be incomplete.

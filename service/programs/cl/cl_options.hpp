@@ -21,6 +21,11 @@ class ProgramSource;
 
 enum class LengthUnit : std::uint8_t { kMillimetre, kInch };
 
+/// As messages have it.
+[[nodiscard]] constexpr const char* name_of(LengthUnit unit) noexcept {
+  return unit == LengthUnit::kInch ? "inch" : "millimetre";
+}
+
 /// Which way an arc turns about the vector that its CIRCLE word gives.
 enum class ArcSense : std::uint8_t {
   kByForm,  ///< 4 numbers: by INDIRV; 6 and 7: right-handed; 11: clockwise (left-handed)
@@ -32,7 +37,7 @@ enum class ArcSense : std::uint8_t {
 struct ClReaderOptions {
   std::optional<Dialect> dialect;          ///< `--dialect`: wins over what the file shows
   std::optional<LengthUnit> unit;          ///< `--units`: wins over the unit word of the file
-  std::optional<LengthUnit> default_unit;  ///< of the machine file: for files without unit word
+  std::optional<LengthUnit> default_unit;  ///< of the machine file: no unit or feed word shows it
   std::optional<double> default_feed_mm_per_s;  ///< `--feed`: for files that cut before a FEDRAT
   double max_feed_mm_per_s = 0;                 ///< of the machine; 0: not known. Only warned about
   std::vector<std::string> allowed_words;       ///< `--allow-unknown`: become vendor words

@@ -7,6 +7,7 @@
 #include "service/programs/cl/interpreter/interpreter.hpp"
 #include "service/programs/cl/program_source.hpp"
 #include "service/programs/cl/text/statement.hpp"
+#include "service/programs/cl/words/unit_by_feed.hpp"
 
 namespace meridian::cl {
 
@@ -15,7 +16,9 @@ class ClProgram final : public ProgramSource {
  public:
   /// `lines` must live as long as the program.
   ClProgram(LineSource& lines, const std::string& name, ClReaderOptions options)
-      : lines_(lines), statements_(lines), interpreter_(name, std::move(options)) {}
+      : lines_(lines),
+        statements_(lines),
+        interpreter_(name, std::move(options), [&lines] { return unit_by_feed_ahead(lines); }) {}
 
   [[nodiscard]] Result read(Blocks& out) override;
   [[nodiscard]] bool is_done() const noexcept override { return is_done_; }

@@ -12,16 +12,32 @@ using text::Count;
 namespace {
 
 std::string unit_text(const ClSummary& s) {
-  const std::string unit = s.unit == LengthUnit::kInch ? "inch" : "millimetre";
+  const std::string unit = name_of(s.unit);
   switch (s.unit_source) {
     case UnitSource::kFile:
       return unit;
     case UnitSource::kCaller:
       return unit + " (--units)";
+    case UnitSource::kFeed:
+      return unit + " (NO UNIT WORD IN THE FILE: as its feeds are)";
     case UnitSource::kStation:
       return unit + " (NO UNIT WORD IN THE FILE: the station's default)";
   }
   return unit;
+}
+
+const char* source_name(UnitSource source) {
+  switch (source) {
+    case UnitSource::kFile:
+      return "file";
+    case UnitSource::kCaller:
+      return "option";
+    case UnitSource::kFeed:
+      return "feed";
+    case UnitSource::kStation:
+      break;
+  }
+  return "default";
 }
 
 Count blocks_of(const ClSummary& s, BlockKind kind) {
@@ -123,10 +139,7 @@ std::string to_json(const ClSummary& s) {
          text::json_quoted(s.dialect).c_str(), text::json_quoted(s.dialect_reason).c_str(),
          text::json_quoted(s.program).c_str());
   append(text, "  \"unit\": \"%s\",\n  \"unit_source\": \"%s\",\n",
-         s.unit == LengthUnit::kInch ? "inch" : "mm",
-         s.unit_source == UnitSource::kFile     ? "file"
-         : s.unit_source == UnitSource::kCaller ? "option"
-                                                : "default");
+         s.unit == LengthUnit::kInch ? "inch" : "mm", source_name(s.unit_source));
   append(text, "  \"lines\": %llu,\n  \"bytes\": %llu,\n  \"comments\": %llu,\n", Count{s.lines},
          Count{s.bytes}, Count{s.comments});
   append(text,

@@ -19,7 +19,8 @@ namespace meridian::cl {
 enum class UnitSource : std::uint8_t {
   kFile,    ///< its unit word
   kCaller,  ///< `--units`
-  kStation  ///< no unit word: the default of the machine file, or millimetre
+  kFeed,    ///< no unit word: that of its feed words
+  kStation  ///< neither: the default of the machine file, or millimetre
 };
 
 /// A word that cannot carry motion.

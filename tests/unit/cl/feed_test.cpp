@@ -131,7 +131,7 @@ TEST(Feed, BeyondTheMachineIsFlaggedOnceAndKept) {
 }
 
 TEST(Units, OfNoneAreMillimetreAndThatIsSaid) {
-  const auto read = read_text("FEDRAT/100,MMPM\nGOTO/1,0,0\nFINI\n");
+  const auto read = read_text("FEDRAT/100\nGOTO/1,0,0\nFINI\n");
   ASSERT_EQ(read.error, "");
   EXPECT_EQ(read.motion().at(0).tip_mm[0], 1);
   EXPECT_EQ(read.summary.unit_source, UnitSource::kStation);
@@ -143,30 +143,10 @@ TEST(Units, OfNoneAreMillimetreAndThatIsSaid) {
   EXPECT_EQ(named.summary.unit_source, UnitSource::kCaller);
 }
 
-TEST(Units, OfNoneBesideAFeedOfTheOtherAreRefusedUntilTheyAreNamed) {
-  const std::string text = "RAPID\nGOTO/0,0,1\nFEDRAT/10,IPM\nGOTO/1,0,0\nFINI\n";
-  const auto read = read_text(text);
-  EXPECT_NE(read.error.find("part.apt:4: a file without a unit word"), std::string::npos)
-      << read.error;
-  EXPECT_NE(read.error.find("--units inch"), std::string::npos) << read.error;
-  ClReaderOptions options;
-  options.unit = LengthUnit::kInch;
-  EXPECT_EQ(read_text(text, options).motion().at(1).tip_mm[0], 25.4);
-  options.unit = LengthUnit::kMillimetre;
-  EXPECT_TRUE(read_text(text, options).warned_of("points in millimetre, but feed in inch"));
-  ClReaderOptions inch_machine;
-  inch_machine.default_unit = LengthUnit::kInch;
-  EXPECT_NE(read_text("FEDRAT/100,MMPM\nGOTO/1,0,0\nFINI\n", inch_machine).error, "");
-  EXPECT_NE(
-      read_text("FEDRAT/10\nGOTO/0,0,9\nCYCLE/DRILL,RAPTO,1,FEDTO,2,IPM,4\nGOTO/0,0,0\nFINI\n")
-          .error.find("part.apt:4: a file without a unit word"),
-      std::string::npos);
-}
-
 TEST(Units, DefaultOfTheMachineHelpsAndIsReported) {
   ClReaderOptions options;
   options.default_unit = LengthUnit::kInch;
-  const auto read = read_text("FEDRAT/1,IPM\nGOTO/1,0,0\nFINI\n", options);
+  const auto read = read_text("FEDRAT/1\nGOTO/1,0,0\nFINI\n", options);
   EXPECT_EQ(read.motion().at(0).tip_mm[0], 25.4);
   EXPECT_TRUE(read.warned_of("read in inch, the machine's default"));
 }

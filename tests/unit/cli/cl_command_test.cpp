@@ -60,6 +60,20 @@ TEST(ClCommand, ReadsAFileWithoutAUnitInMillimetreAndSaysSo) {
   EXPECT_NE(outcome.output.find("warning: NO UNIT WORD"), std::string::npos) << outcome.output;
 }
 
+TEST(ClCommand, ReadsAFileWithoutAUnitInThatOfItsFeedsAndRefusesItFromAPipe) {
+  const std::string part = "RAPID\nGOTO/0,0,1\nFEDRAT/10,IPM\nGOTO/1,0,0\nFINI\n";
+  const TextFile file(part, ".cls");
+  const CommandOutput read = run_tool("cl -s --json " + file.path().string());
+  EXPECT_EQ(read.exit_code, 0) << read.output;
+  EXPECT_NE(read.output.find("\"unit\": \"inch\""), std::string::npos) << read.output;
+  EXPECT_NE(read.output.find("\"unit_source\": \"feed\""), std::string::npos) << read.output;
+  EXPECT_NE(read.output.find("as its feeds are (line 3)"), std::string::npos) << read.output;
+  const CommandOutput piped = run_tool("cl -", "cat " + file.path().string());
+  EXPECT_EQ(piped.exit_code, 3) << piped.output;
+  EXPECT_NE(piped.output.find("a file, unlike a pipe"), std::string::npos) << piped.output;
+  EXPECT_EQ(run_tool("cl --units inch -", "cat " + file.path().string()).exit_code, 0);
+}
+
 TEST(SimulateCommand, GivesWordsToolsAndTravelTogetherAsJson) {
   const std::string machine = std::string(" --json -m ") + MERIDIAN_SOURCE_DIR
                               "/deploy/machines/trunnion-ac.toml --tools " MERIDIAN_SOURCE_DIR

@@ -99,9 +99,14 @@ Expected<MotionFeed, Refusal> feed_of(const WrittenFeed& written, const FeedCont
   return MotionFeed{BlockKind::kCut, FeedMeaning::kTip, feed};
 }
 
-bool is_of_other_unit(FeedUnit feed, LengthUnit unit) {
+std::optional<LengthUnit> length_unit_of(FeedUnit feed) {
   const double length_mm = meaning_of(feed).length_mm;
-  return length_mm > 0 && (unit == LengthUnit::kInch) == (length_mm == 1);
+  if (length_mm == 0) return std::nullopt;
+  return length_mm == 1 ? LengthUnit::kMillimetre : LengthUnit::kInch;
+}
+
+bool is_of_other_unit(FeedUnit feed, LengthUnit unit) {
+  return length_unit_of(feed).value_or(unit) != unit;
 }
 
 void remark_on_feed(const WrittenFeed& written, const MotionFeed& feed, LengthUnit unit,

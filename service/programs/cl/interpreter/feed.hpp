@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "meridian/path/cl_block.hpp"
@@ -63,6 +64,15 @@ struct FeedContext {
 /// spindle that stands, and one beyond 1e6 mm/min. Proof: tests/unit/cl/feed_test.cpp.
 [[nodiscard]] Expected<MotionFeed, Refusal> feed_of(const WrittenFeed& written,
                                                     const FeedContext& context);
+
+/// The unit of lengths that a feed word names; inch for feet. Nothing where it names none.
+[[nodiscard]] std::optional<LengthUnit> length_unit_of(FeedUnit feed);
+
+/// A unit of lengths that a feed word shows, and its line.
+struct ShownUnit {
+  LengthUnit unit = LengthUnit::kMillimetre;
+  std::uint32_t line = 0;
+};
 
 /// Whether a feed word is of millimetres where lengths are in inch, or of inches and feet where
 /// they are in millimetre.

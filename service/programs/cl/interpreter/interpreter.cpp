@@ -39,8 +39,8 @@ void lose_position(Modal& m) {
 
 }  // namespace
 
-Interpreter::Interpreter(std::string name, ClReaderOptions options)
-    : name_(std::move(name)), modal_(in_capitals(std::move(options))) {
+Interpreter::Interpreter(std::string name, ClReaderOptions options, LookAhead look_ahead)
+    : name_(std::move(name)), modal_(in_capitals(std::move(options)), std::move(look_ahead)) {
   modal_.path.set_max_feed(modal_.options.max_feed_mm_per_s);
 }
 

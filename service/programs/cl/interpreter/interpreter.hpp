@@ -19,7 +19,8 @@ class Interpreter {
   using Blocks = std::vector<ClBlock>;
   using Result = Expected<void, ClError>;
 
-  Interpreter(std::string name, ClReaderOptions options);
+  /// `look_ahead` is asked at most once, where nothing before the first motion shows the unit.
+  Interpreter(std::string name, ClReaderOptions options, LookAhead look_ahead);
 
   /// A comment or a word showed what wrote the file.
   void see(Dialect dialect, std::uint32_t line, std::string_view what);

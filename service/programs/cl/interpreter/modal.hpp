@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -23,9 +24,13 @@ namespace meridian::cl {
 struct Units {
   std::optional<LengthUnit> stated;    ///< by the last unit word
   std::optional<LengthUnit> in_force;  ///< nothing: to be resolved at the next motion
+  std::optional<ShownUnit> by_feed;    ///< for a file without a unit word
   double to_mm = 1;
   double cutter = 0;  ///< width of the tool that the file describes, as written
 };
+
+/// Finds the first feed word behind the last statement that shows the unit of the file.
+using LookAhead = std::function<std::optional<ShownUnit>()>;
 
 /// The tool axis, which points of three numbers leave out.
 struct ToolAxis {
@@ -95,8 +100,9 @@ enum class CutcomPath : std::uint8_t { kNotReported, kOfTool, kOfPart };
 
 /// Everything in a CL file that holds for later statements, and what reading them has given.
 struct Modal {
-  explicit Modal(ClReaderOptions reader_options)
+  explicit Modal(ClReaderOptions reader_options, LookAhead unit_ahead = {})
       : options(std::move(reader_options)),
+        look_ahead(std::move(unit_ahead)),
         dialect(options.dialect),
         frames(options.frame),
         path(summary, remarks) {
@@ -106,6 +112,7 @@ struct Modal {
   Modal& operator=(const Modal&) = delete;
 
   const ClReaderOptions options;
+  const LookAhead look_ahead;  ///< empty: a language whose feeds name no unit
   ClSummary summary;
   Remarks remarks;
   DialectFinder dialect;

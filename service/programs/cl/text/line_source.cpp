@@ -82,6 +82,20 @@ bool LineSource::read_on() {
   return static_cast<std::size_t>(end_ - begin_) > before;
 }
 
+bool LineSource::look_ahead(const std::function<void(LineSource&)>& look) {
+  const std::streampos kNowhere(std::streamoff(-1));
+  std::streambuf* const source = stream_ != nullptr ? stream_->rdbuf() : nullptr;
+  std::streampos at;
+  if (source != nullptr) {
+    at = source->pubseekoff(0, std::ios::cur, std::ios::in);
+    if (at == kNowhere) return false;
+  }
+  LineSource ahead(*this);  // goes on from this buffer into its own: lines given out stay good
+  look(ahead);
+  if (source != nullptr && source->pubseekpos(at, std::ios::in) != at) supply_ = Supply::kFailed;
+  return true;
+}
+
 LineSource::Outcome LineSource::next(std::string_view& line) {
   if (!started_) (void)head();
   const char* newline = find_newline(begin_, end_, line_end_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <istream>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,10 @@ class LineSource {
   [[nodiscard]] std::string_view head();
   /// Waits for more of the head; false where there is none, or head() is as long as it gets.
   [[nodiscard]] bool read_on();
+
+  /// Shows `look` the lines behind the last one, all of which are read again afterwards. False, and
+  /// nothing is shown, where the stream cannot go back, as a pipe.
+  bool look_ahead(const std::function<void(LineSource&)>& look);
 
   [[nodiscard]] std::uint32_t line_number() const noexcept { return line_number_; }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }

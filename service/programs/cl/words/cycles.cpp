@@ -7,6 +7,7 @@
 #include "service/programs/cl/text/written_text.hpp"
 #include "service/programs/cl/words/handlers.hpp"
 #include "service/programs/cl/words/motion.hpp"
+#include "service/programs/cl/words/unit_by_feed.hpp"
 
 namespace meridian::cl {
 namespace {
@@ -166,6 +167,7 @@ void end_cycle(Modal& m) {
 }  // namespace
 
 Outcome read_cycle_word(Modal& m, const Statement& s) {
+  see_unit_by_feed(m, s);
   auto written = read_cycle(s, m.dialect);
   if (!written) {
     m.cycle.emplace().kind = HoleKind::kRefused;

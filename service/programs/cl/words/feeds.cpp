@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "service/programs/cl/text/written_text.hpp"
 #include "service/programs/cl/words/handlers.hpp"
+#include "service/programs/cl/words/unit_by_feed.hpp"
 
 namespace meridian::cl {
 namespace {
-
-const char* name_of(LengthUnit unit) { return unit == LengthUnit::kInch ? "inch" : "millimetre"; }
 
 std::optional<LengthUnit> unit_of(const Statement& s) {
   if (s.argument_count != 1) return std::nullopt;
@@ -50,6 +49,7 @@ Outcome read_units(Modal& m, const Statement& s) {
 }
 
 Outcome read_feed(Modal& m, const Statement& s) {
+  see_unit_by_feed(m, s);
   WrittenFeed feed;
   bool is_automatic = false, asks_post = false;
   for (std::size_t i = 0; i < s.argument_count; ++i) {

@@ -12,26 +12,43 @@ namespace {
 constexpr double kFarthest_mm = 1e6;  // no machine is larger; catches lost decimal points
 constexpr double kLargestCutter_mm = 120;
 
-/// The file's unit word, what the caller says, or the station's default, which is said.
+std::string option_for(LengthUnit unit) {
+  return unit == LengthUnit::kInch ? "--units inch" : "--units mm";
+}
+
+LengthUnit other_than(LengthUnit unit) {
+  return unit == LengthUnit::kInch ? LengthUnit::kMillimetre : LengthUnit::kInch;
+}
+
+/// What the feed words of a file without a unit word show, else the default; it is said.
+LengthUnit unit_without_word(Modal& m, std::uint32_t line) {
+  Units& units = m.units;
+  const auto& given = m.options.default_unit;
+  if (!units.by_feed && m.look_ahead) units.by_feed = m.look_ahead();
+  m.summary.unit_source = units.by_feed ? UnitSource::kFeed : UnitSource::kStation;
+  const LengthUnit unit =
+      units.by_feed ? units.by_feed->unit : given.value_or(LengthUnit::kMillimetre);
+  m.remarks.warn("unit default", line, [&] {
+    const std::string why =
+        units.by_feed ? "as its feeds are (line " + std::to_string(units.by_feed->line) + ")"
+                      : std::string("the ") + (given ? "machine's" : "station's") + " default";
+    return std::string("NO UNIT WORD IN THE FILE: read in ") + name_of(unit) + ", " + why + "; " +
+           option_for(other_than(unit)) + " if that is wrong";
+  });
+  return unit;
+}
+
+/// What the caller says, the file's unit word, or what holds without one.
 void resolve_unit(Modal& m, std::uint32_t line) {
-  const ClReaderOptions& options = m.options;
-  LengthUnit unit = options.default_unit.value_or(LengthUnit::kMillimetre);
-  m.summary.unit_source = UnitSource::kStation;
-  if (m.units.stated) {
+  LengthUnit unit = LengthUnit::kMillimetre;
+  if (m.options.unit) {
+    unit = *m.options.unit;
+    m.summary.unit_source = UnitSource::kCaller;
+  } else if (m.units.stated) {
     unit = *m.units.stated;
     m.summary.unit_source = UnitSource::kFile;
-  }
-  if (options.unit) {
-    unit = *options.unit;
-    m.summary.unit_source = UnitSource::kCaller;
-  }
-  if (m.summary.unit_source == UnitSource::kStation) {
-    m.remarks.warn("unit default", line, [&] {
-      return std::string("NO UNIT WORD IN THE FILE: read in ") +
-             (unit == LengthUnit::kInch ? "inch" : "millimetre") + ", the " +
-             (options.default_unit ? "machine's" : "station's") + " default; " +
-             (unit == LengthUnit::kInch ? "--units mm" : "--units inch") + " if that is wrong";
-    });
+  } else {
+    unit = unit_without_word(m, line);
   }
   m.units.in_force = unit;
   m.units.to_mm = unit == LengthUnit::kInch ? units::kInch_mm : 1.0;
@@ -123,17 +140,21 @@ Outcome axis_left_out(Modal& m, std::uint32_t line) {
       "axis left out");
 }
 
-/// The feed word is all that shows the unit of a file without a unit word.
+/// The feed words are all that shows the unit of a file without a unit word.
 Outcome check_unit_by_feed(const Modal& m, FeedUnit feed) {
-  const LengthUnit unit = *m.units.in_force;
-  if (m.summary.unit_source != UnitSource::kStation || !is_of_other_unit(feed, unit)) return {};
-  const bool is_inch = unit == LengthUnit::kInch;
-  return refuse(std::string("a file without a unit word would be read in ") +
-                    (is_inch ? "inch" : "millimetre") + ", but its feed is in " +
-                    (is_inch ? "millimetre" : "inch"),
-                is_inch ? "--units mm, or --units inch where the points are in inch"
-                        : "--units inch, or --units mm where the points are in millimetre",
-                "unit by feed");
+  const LengthUnit unit = *m.units.in_force, other = other_than(unit);
+  const bool is_by_feed = m.summary.unit_source == UnitSource::kFeed;
+  const bool has_no_word = is_by_feed || m.summary.unit_source == UnitSource::kStation;
+  if (!has_no_word || !is_of_other_unit(feed, unit)) return {};
+  const std::string remedy =
+      option_for(other) + ", or " + option_for(unit) + " where the points are in " + name_of(unit);
+  return refuse(
+      std::string("a file without a unit word is read in ") + name_of(unit) +
+          (is_by_feed ? ", as its feed in line " + std::to_string(m.units.by_feed->line) + " is"
+                      : std::string()) +
+          ", but this feed is in " + name_of(other),
+      is_by_feed ? remedy : remedy + "; a file, unlike a pipe, is searched for its feeds first",
+      "unit by feed");
 }
 
 Expected<MotionFeed, Refusal> cutting_feed(Modal& m, std::uint32_t line) {
