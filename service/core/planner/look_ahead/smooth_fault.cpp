@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "meridian/planner/joints_at.hpp"
 #include "service/core/planner/look_ahead/smooth_run.hpp"
 
 /// Where a smooth run ends that cannot go on: which block is named, and the rest ahead of it. Part
@@ -53,6 +54,31 @@ void SmoothRun::end_ahead_of_fault() noexcept {
     }
   }
   feed_.end_at({}, 0, 0, first_free_cell);  // nothing lies ahead of it
+}
+
+/// On the pole the redundant joint is held where it came from: it is followed there, as the cycle
+/// does, which rests where the last of its places led. A span that leaves reach ahead of its end,
+/// where a run that is refused rests, has the last joints that there are.
+JointVector SmoothRun::joints_on(const PathPiece& piece, double end) const noexcept {
+  JointVector joints = piece.joints_begin;
+  for (double left = 0.1; left > 1e-7; left *= 0.1) {
+    const auto near_end = joints_at(model_, piece, (1 - left) * end, joints);
+    if (near_end.status != SolveStatus::kUnreachable) joints = near_end.q;
+  }
+  const auto at_end = joints_at(model_, piece, end, joints);
+  return at_end.status == SolveStatus::kUnreachable ? joints : at_end.q;
+}
+
+JointVector SmoothRun::joints_at_rest() const noexcept {
+  const CellGrid& grid = feed_.grid();
+  if (grid.last() == grid.first()) return span_joints_;
+  const FeedCell& last = grid[grid.last() - 1];
+  const auto number = static_cast<std::int64_t>(last.span);
+  if (number >= begins_.end_index()) return span_joints_;
+  PathPiece piece = make_spline(spans_[number]);
+  piece.tool_length_mm = start_.tool_length_mm;
+  piece.joints_begin = begins_[number];
+  return joints_on(piece, std::min(last.x + last.h, piece.length));
 }
 
 /// Names the block ahead of which the machine comes to rest: of the first span that is held back

@@ -36,6 +36,7 @@ SmoothRun::SmoothRun(const MachineModel& model, FeedRaise& raise, PoleLookAhead*
       travel_(model),
       spans_(kSpans),
       ends_(kBlockEnds),
+      begins_(kSpans),
       relaxed_axes_(kMaxRelaxedAxes) {}
 
 void SmoothRun::begin(const RunStart& start, const BandTolerance& tolerance,
@@ -59,10 +60,11 @@ void SmoothRun::begin_feed(int branch) noexcept {
   feed_.begin(start_.joints, branch, start_.tool_length_mm);
   raise_.rest();
   spans_.clear();
+  begins_.clear();
   staged_spans_ = 0;
   span_joints_ = start_.joints;
   travel_.begin(start_.joints, start_.tool_length_mm);
-  window_ = start_.window;
+  window_ = rested_window_ = start_.window;
   open_.fill({});
   has_window_ = false;
   supply_ = Supply::kFlowing;
@@ -135,8 +137,8 @@ SmoothRun::Status SmoothRun::publish_window(MotionWriter& writer) noexcept {
 
 /// Whether the cycle will come to the end of the run: no tail is left that it could enter instead.
 bool SmoothRun::is_end_certain(const MotionWriter& writer) const noexcept {
-  const bool has_one_window = window_ == start_.window + 1;
-  if (window_ == start_.window || has_one_window) return true;
+  const bool has_one_window = window_ == rested_window_ + 1;
+  if (window_ == rested_window_ || has_one_window) return true;
   const auto begun = writer.window_begun();
   return begun && begun->epoch == start_.epoch && begun->window + 1 == window_;
 }
@@ -302,6 +304,7 @@ void SmoothRun::follow_tail(MotionWriter& writer) noexcept {
     if (open.rest_cell < 0 || open.window != tail->window) continue;
     feed_.resume_from(open.rest_cell);
     writer.forget_ahead();
+    rested_window_ = window_;
     open_.fill({});
     has_window_ = false;
     return;
@@ -331,29 +334,6 @@ bool SmoothRun::write(MotionWriter& writer) noexcept {
   return true;
 }
 
-/// On the pole the redundant joint is held where it came from: it is followed there, as the cycle
-/// does, which rests where the last of its places led. A span that leaves reach ahead of its end,
-/// where a run that is refused rests, has the last joints that there are.
-JointVector SmoothRun::joints_on(const PathPiece& piece, double end) const noexcept {
-  JointVector joints = piece.joints_begin;
-  for (double left = 0.1; left > 1e-7; left *= 0.1) {
-    const auto near_end = joints_at(model_, piece, (1 - left) * end, joints);
-    if (near_end.status != SolveStatus::kUnreachable) joints = near_end.q;
-  }
-  const auto at_end = joints_at(model_, piece, end, joints);
-  return at_end.status == SolveStatus::kUnreachable ? joints : at_end.q;
-}
-
-JointVector SmoothRun::joints_at_rest() const noexcept {
-  const CellGrid& grid = feed_.grid();
-  if (staged_spans_ == 0 || grid.last() == grid.first()) return span_joints_;
-  const FeedCell& last = grid[grid.last() - 1];
-  PathPiece piece = make_spline(spans_[static_cast<std::int64_t>(staged_spans_ - 1)]);
-  piece.tool_length_mm = start_.tool_length_mm;
-  piece.joints_begin = last_begin_;
-  return joints_on(piece, std::min(last.x + last.h, piece.length));
-}
-
 bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept {
   for (; staged_spans_ < until; ++staged_spans_) {
     const JointSpan& span = spans_[static_cast<std::int64_t>(staged_spans_)];
@@ -363,7 +343,7 @@ bool SmoothRun::stage_spans(MotionWriter& writer, std::uint64_t until) noexcept 
     piece.tool_length_mm = start_.tool_length_mm;
     piece.joints_begin = joints_at(model_, piece, 0.0, span_joints_).q;
     piece.joints_end = joints_on(piece, piece.length);
-    last_begin_ = piece.joints_begin;
+    begins_.push(piece.joints_begin);
     span_joints_ = piece.joints_end;
     if (!writer.stage(piece)) return false;
   }

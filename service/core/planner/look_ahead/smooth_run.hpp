@@ -151,7 +151,7 @@ class SmoothRun : public RewindTrial {
   [[nodiscard]] bool write(MotionWriter& writer) noexcept;
   /// On `piece` at `end`, followed from its begin.
   [[nodiscard]] JointVector joints_on(const PathPiece& piece, double end) const noexcept;
-  /// Where a run that failed rests: ahead of the end of the last span that is in the port.
+  /// Where a run that failed rests.
   [[nodiscard]] JointVector joints_at_rest() const noexcept;
   [[nodiscard]] bool stage_spans(MotionWriter& writer, std::uint64_t until) noexcept;
   [[nodiscard]] TimePiece make_piece(const FeedPiece& piece, bool is_tail) const noexcept;
@@ -170,9 +170,10 @@ class SmoothRun : public RewindTrial {
   IndexRing<BlockEnd> ends_;    ///< of blocks, that no span is marked with yet
   RunStart start_;
   std::uint64_t staged_spans_ = 0;  ///< path pieces of spans before this one are in the port
-  JointVector last_begin_{};        ///< at the begin of the last of them
-  JointVector span_joints_{};       ///< at its end, or where a run that failed rests on it
+  IndexRing<JointVector> begins_;   ///< at the begin of each of them, by number
+  JointVector span_joints_{};       ///< at the end of the last, or where a run that failed rests
   std::uint32_t window_ = 0;
+  std::uint32_t rested_window_ = 0;  ///< the next one when the machine last rested
   std::array<OpenWindow, MotionReader::kRemembered + 2> open_;
   bool has_window_ = false;  ///< feed_.window() waits for room
   bool is_band_finished_ = false;
