@@ -54,6 +54,7 @@ TEST(Helix, IsReadFromItsNumbersAlone) {
 TEST(Helix, WhosePartsContradictEachOtherIsRefused) {
   for (const auto& [text, reason] :
        {std::pair{helix("0,1,0", "80", "1", "0,10,1"), "an angle of 80 deg"},
+        {helix("0,1,0", "0.01", "0", "10,0,0"), "an angle of 0.01 deg"},
         {helix("0,1,0", "90", "4", "0,10,1"), "a height of 4 mm"},
         {helix("1,0,0", "90", "1", "0,10,1"), "INDIRV does not give the sense"},
         {helix("0,1,0", "90", "1", "0,11,1"), "one circle"},

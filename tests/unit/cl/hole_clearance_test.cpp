@@ -53,11 +53,25 @@ TEST(Cycle, OfFusionInsideThePartOrAlongATiltedAxisIsRefused) {
   }
 }
 
+TEST(Cycle, OfFusionWithAWordForItsClearanceTooIsRefused) {
+  for (const char* const word : {"RTRCTO, 40", "CLEAR, 20"}) {
+    const auto read =
+        read_body(std::string("GOTO/0,0,50\nCYCLE/DRILL, 10, MMPM, 200, 15, RAPTO, 9, ") + word +
+                      "\nGOTO/10,0,-8\n",
+                  written_by(Dialect::kFusion));
+    EXPECT_NE(read.error.find("a clearance by its position and by a word"), std::string::npos)
+        << read.error;
+  }
+}
+
 TEST(Cycle, WithAClearanceOfUnknownOriginBesideItsDepthIsRefused) {
   const auto at_rapid_level = read_body(
       "GOTO/0,0,50\nCYCLE/DRILL, DEEP, FEDTO, 9, INCR, 3, MMPM, 90, CLEAR, 15, RAPTO, 2\n"
       "GOTO/10,0,0\n");
   EXPECT_NE(at_rapid_level.error.find("CLEAR beside FEDTO"), std::string::npos);
+  const auto alone =
+      read_body("GOTO/0,0,50\nCYCLE/DRILL, FEDTO, 9, MMPM, 90, CLEAR, 15\nGOTO/10,0,0\n");
+  EXPECT_NE(alone.error.find("RAPTO and RTRCTO"), std::string::npos) << alone.error;
   expect_blocks(
       holes("CYCLE/DRILL, FEDTO, 9, MMPM, 90, CLEAR, 15, RTRCTO, 20, RAPTO, 2\nGOTO/10,0,0\n"),
       {{'R', {10, 0, 50}}, {'R', {10, 0, 2}}, {'F', {10, 0, -9}, 90}, {'R', {10, 0, 20}}});

@@ -58,6 +58,14 @@ TEST(SiemensProgram, TurnsRotaryAxesWithinATurnAsItsWordsSay) {
     EXPECT_NEAR(axis(last)[2], std::cos(tilt), kTiny) << words;
     EXPECT_NEAR(std::abs(axis(last)[0]), std::sin(tilt) * std::sin(turn), kTiny) << words;
   }
+  // 2.8 - 1.4 is not 1.4 where numbers are rounded: it stands there all the same.
+  const ReadText still = read_siemens(
+      "G0 A30 C2.8\nTRAORI\nORIAXES\nG0 X0 Y0 Z50 A30 C2.8\nG1 X1 C=ACP(1.4)\nG1 X2 C=ACP(1.4)\n",
+      options);
+  ASSERT_EQ(still.error, "");
+  const auto& motion = still.motion();
+  EXPECT_NEAR((axis(motion.back()) - axis(motion[motion.size() - 2])).norm(), 0, kTiny);
+  EXPECT_NEAR((tip(motion.back()) - tip(motion[motion.size() - 2])).norm(), 1, kTiny);
   EXPECT_NE(read_siemens("G0 X=DC(5) Y0 Z0\n", options).error.find("an axis that does not turn"),
             std::string::npos);
 }

@@ -118,11 +118,11 @@ std::vector<ReadText> cuts_after_vectors(const std::string& tilt, const std::str
 
 TEST(Turns, ByVectorsLeaveTheRotaryAxesWhereNoWordSays) {
   for (const ReadText& read : cuts_after_vectors("0.6", "")) {
-    EXPECT_NE(read.error.find("while a rotary axis is not at zero"), std::string::npos)
+    EXPECT_NE(read.error.find("no word says where they stand"), std::string::npos)
         << read.error << read.summary.dialect;
   }
   for (const ReadText& read : cuts_after_vectors("0.6", " C0")) {
-    EXPECT_NE(read.error.find("while a rotary axis is not at zero"), std::string::npos)
+    EXPECT_NE(read.error.find("no word says where they stand"), std::string::npos)
         << read.error << read.summary.dialect;
   }
   for (const ReadText& read : cuts_after_vectors("0.6", " A0 C0")) EXPECT_EQ(read.error, "");

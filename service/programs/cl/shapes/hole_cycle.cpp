@@ -83,10 +83,19 @@ Outcome set_depth(const CycleWords& words, const HoleType& type, CycleStatement&
   return {};
 }
 
+bool gives_retraction(const CycleWords& words) {
+  return !words.retract_to.empty() || !words.return_to.empty() || words.returns_to_before;
+}
+
 /// Levels above the top. ISO 4343 and Creo count RAPTO down from CLEAR; the others up from the top.
 Outcome set_levels(const CycleWords& words, CycleStatement& out) {
   HoleCycle& cycle = out.cycle;
   const bool is_iso = words.feed_to.empty() && !words.clear.empty();
+  if (!is_iso && !words.clear.empty() && !gives_retraction(words)) {
+    return refuse(
+        "CYCLE gives CLEAR beside FEDTO: a level above the hole or a Z, as the writer means",
+        "output RAPTO and RTRCTO, or let the CAM system write the cycle out as motion");
+  }
   std::optional<double> retract;
   if (is_iso) {
     cycle.rapid_level = words.clear[0] - (words.rapid_to.empty() ? 0 : words.rapid_to[0]);
@@ -99,15 +108,10 @@ Outcome set_levels(const CycleWords& words, CycleStatement& out) {
     cycle.rapid_level = words.rapid_to[0];
   } else {
     return refuse("CYCLE gives no level down to which the tool may move at rapid",
-                  "RAPTO or CLEAR with one number");
+                  "RAPTO with one number");
   }
   if (!words.retract_to.empty()) retract = words.retract_to[0];
   if (!is_iso && !words.return_to.empty()) retract = words.return_to[0];
-  if (!is_iso && !words.clear.empty() && !retract && !words.returns_to_before) {
-    return refuse(
-        "CYCLE gives CLEAR beside FEDTO: a level above the hole or a Z, as the writer means",
-        "output RTRCTO, or let the CAM system write the cycle out as motion");
-  }
   if (words.returns_to_before) cycle.returns = CycleReturn::kToBefore;
   if (!(cycle.rapid_level >= 0 && cycle.rapid_level <= kLargest)) {
     return refuse("CYCLE: the rapid level lies " + short_number(cycle.rapid_level) +
@@ -226,6 +230,9 @@ Expected<CycleStatement, Refusal> read_cycle(const Statement& s, const DialectFi
     return error(done.error());
   if (!out.cycle.clearance_z) {
     if (auto done = set_levels(*words, out); !done) return error(done.error());
+  } else if (gives_retraction(*words) || !words->clear.empty()) {
+    return refuse("CYCLE gives a clearance by its position and by a word",
+                  "let the CAM system write the cycle out as motion");
   }
   if (auto done = set_pecks(*words, out.cycle); !done) return error(done.error());
   return out;

@@ -99,7 +99,8 @@ Expected<int, Refusal> whole_turns(const WrittenArc& helix, const Arc& arc, cons
                                    double to_mm) {
   if (arc.status != Arc::Status::kOk) return 0;  // the arc is refused with its own reason
   const double rest = units::rad_from_deg(helix.angle_deg) - arc.sweep_rad;
-  if (std::abs(std::remainder(rest, kCircle_rad)) > kAngleTolerance_rad) {
+  if (rest < -kAngleTolerance_rad ||
+      std::abs(std::remainder(rest, kCircle_rad)) > kAngleTolerance_rad) {
     return refuse("HELICAL gives an angle of " + short_number(helix.angle_deg) +
                       " deg, but its end lies elsewhere",
                   "output an end that the angle leads to, or points");

@@ -54,7 +54,9 @@ bool is_relative(const State& s, const Word& word) {
 /// Where a rotary word leads from `before`, deg.
 double rotary_end(const Word& word, double before, bool is_incremental) {
   using enum Word::DistanceMode;
-  const double turn = std::remainder(word.number - before, 360.0);
+  constexpr double kSameAngle_deg = 1e-9;  // rounding, which would make a whole turn of none
+  const double off = std::remainder(word.number - before, 360.0);
+  const double turn = std::abs(off) > kSameAngle_deg ? off : 0;
   switch (word.distance_mode) {
     case kShortest:
       return before + turn;
@@ -180,8 +182,10 @@ cl::Outcome check_words(const State& s, const Line& line, bool is_arc) {
   }
   const Word* const lean = line.find("Q");
   if (lean != nullptr && lean->number != 0) {
-    return refuse("word Q beside a point: under G43.5 the control leans the tool by it",
-                  "output the tool axis itself, and Q0");
+    const bool leans = s.modes.control == Control::kVector;
+    return refuse(leans ? "word Q beside a point: under G43.5 the control leans the tool by it"
+                        : "word Q beside a point is not understood",
+                  leans ? "output the tool axis itself, and Q0" : "leave it out");
   }
   const bool is_fanuc = s.modes.language == Language::kFanuc;  // else D is the tool's own offset
   if (line.find("E") != nullptr || (is_fanuc && line.find("D") != nullptr)) {
@@ -224,6 +228,12 @@ cl::Outcome check_plane(const State& s, const Target& to) {
 /// Without tool-centre control a cut is that of the tip only where no rotary axis is turned.
 cl::Outcome check_tip(const State& s, const Target& to) {
   if (s.modes.motion != Motion::kLine || is_of_tip(s, to)) return {};
+  if (to.position.is_by_control) {
+    return refuse(
+        "a cut without tool-centre control, but the control turned the rotary axes, and no word "
+        "says where they stand",
+        "write the words of all rotary axes before it", "no tip");
+  }
   return refuse("a cut without tool-centre control while a rotary axis is not at zero",
                 "output G43.4 or G43.5, under which X Y Z are those of the tool tip", "no tip");
 }
