@@ -30,7 +30,8 @@ struct GainingSpeed : Program {
   }
   /// Of a stop at the planned speed and `ds` more, with `factor` times the planned acceleration.
   [[nodiscard]] bool is_planned(double ds, double factor, const StopMargin& margin = kMargin) {
-    return is_rise_planned(cycle(), {planned.s, planned.ds + ds, factor * planned.dds, 0}, margin);
+    return is_rise_planned(cycle(), StopKind::kHold,
+                           {planned.s, planned.ds + ds, factor * planned.dds, 0}, margin);
   }
 
   PathState planned;
@@ -47,8 +48,25 @@ TEST(StopRise, CountsTheSpeedThatAStopRisesToAndNotTheAccelerationAlone) {
   GainingSpeed one;
   const double rise = 0.5 * one.planned.dds * one.planned.dds / kMargin.jerk;  // mm/s
   EXPECT_FALSE(one.is_planned(0.01, 1)) << "from more speed to more speed";
-  EXPECT_TRUE(one.is_planned(-3.1 * rise, 2)) << "twice the acceleration rises four times as far";
-  EXPECT_FALSE(one.is_planned(-2.9 * rise, 2));
+  EXPECT_FALSE(one.is_planned(-2.9 * rise, 2)) << "twice the acceleration, four times the rise";
+}
+
+/// Where the path bends it would come faster than the planner reckons with.
+TEST(StopRise, IsNotPlannedWhereTheStopEndsFarther) {
+  GainingSpeed one;
+  const double rise = 0.5 * one.planned.dds * one.planned.dds / kMargin.jerk;
+  EXPECT_FALSE(one.is_planned(-3.1 * rise, 2)) << "no faster, but it lets go later";
+  EXPECT_TRUE(one.is_planned(-0.5 * one.planned.ds, 2));
+  const auto distance = [&](double ds, double factor) {
+    return StopLaw({0, one.planned.ds + ds, factor * one.planned.dds, 0}, kMargin).distance();
+  };
+  double low = -0.5 * one.planned.ds, high = 0;
+  for (int n = 0; n < 50; ++n) {
+    const double ds = 0.5 * (low + high);
+    (distance(ds, 2) > distance(0, 1) ? high : low) = ds;
+  }
+  EXPECT_TRUE(one.is_planned(low - 1e-3, 2));
+  EXPECT_FALSE(one.is_planned(high + 1e-3, 2));
 }
 
 TEST(StopRise, IsNoQuestionWhereNoSpeedIsGainedOrAStopHasNoMargin) {

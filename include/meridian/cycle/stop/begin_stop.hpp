@@ -88,17 +88,32 @@ inline void lay_out_stop(CycleState& state, const PathState& begin,
   return StopLaw(begin, authority).distance() > distance_to_block_end(c) - kSameEnd_mm;
 }
 
-/// Whether a law with `authority` from `begin` gets no faster than one from the plan there. While
-/// the rate of plan time still rises, of a resume, it adds to s̈: the planner reckons with the s̈ of
-/// the plan, and the law could let go of more above the velocity that a joint has.
+/// The state of the plan at the rate up to which `piece` grants `authority` to stops of `kind`.
+[[nodiscard]] inline PathState granted_state(const TimePiece& piece, StopKind kind,
+                                             const PathState& plan, double peak) noexcept {
+  const double planned = std::min(plan.ds, margins_of(piece, kind).planned_velocity);
+  const double velocity = peak <= piece.slow_velocity ? piece.slow_velocity : planned;
+  const double rate = velocity / plan.ds;
+  return {plan.s, velocity, rate * rate * plan.dds, 0};
+}
+
+/// Whether a law with `authority` from `begin` gets no faster than one from the plan there, and no
+/// farther. While the rate of plan time still rises, of a resume, it adds to s̈: the planner reckons
+/// with the s̈ of the plan. The law could let go of more above the velocity that a joint has, and
+/// would come faster to where the path bends.
 /// Proof: tests/unit/cycle/stop_rise_test.cpp.
-[[nodiscard]] inline bool is_rise_planned(const Cycle& c, const PathState& begin,
+[[nodiscard]] inline bool is_rise_planned(const Cycle& c, StopKind kind, const PathState& begin,
                                           const StopMargin& authority) noexcept {
   constexpr double kRounding = 1 + 1e-9;
   const TimePiece& piece = *c.reader.piece();
   if (!(begin.dds > 0) || !(authority.jerk > 0)) return true;
   const PathState plan = state_at(piece, c.state.piece_time);
-  return peak_of(begin, authority) <= kRounding * peak_of(plan, authority);
+  const double peak = peak_of(begin, authority);
+  if (!(peak <= kRounding * peak_of(plan, authority))) return false;
+  const double rate = begin.ds / plan.ds;
+  if (begin.dds <= kRounding * rate * rate * plan.dds) return true;
+  const PathState granted = granted_state(piece, kind, plan, peak);
+  return StopLaw(begin, authority).distance() <= kRounding * StopLaw(granted, authority).distance();
 }
 
 /// What a stop of `kind` may use from here where the machine may brake harder than plans do at any
@@ -129,7 +144,7 @@ inline void begin_stop(Cycle& c, StopKind kind, double share = 1.0) noexcept {
     authority = is_on_law ? authority_where_it_brakes(c, kind) : authority_of(piece, kind, begin);
     authority = {authority.accel * share, authority.jerk * share};
     if (kind == StopKind::kHold && passes_block_end(c, begin, authority)) authority = {};
-    if (!is_rise_planned(c, begin, authority)) authority = {};
+    if (!is_rise_planned(c, kind, begin, authority)) authority = {};
   }
   const bool was_by_rate = is_along_plan(stop.mode);
   const bool has_authority = authority.jerk > 0 || !(begin.ds > 0);

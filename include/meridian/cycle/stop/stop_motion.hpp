@@ -83,8 +83,8 @@ inline void end_stop_here(CycleState& state) noexcept {
   if (!(authority.jerk > 0)) return {};
   if (is_fault && !(piece.slow_velocity > 0) && !is_reckoned_with(c, authority)) return {};
   if (!is_fault && passes_block_end(c, c.state.on_path, authority)) return {};
-  if (!is_rise_planned(c, c.state.on_path, authority)) return {};
-  return authority;
+  const StopKind kind = is_fault ? StopKind::kFault : StopKind::kHold;
+  return is_rise_planned(c, kind, c.state.on_path, authority) ? authority : StopMargin{};
 }
 
 /// Lays the stop on the path out anew where the piece that it has come to, or the speed, has more
