@@ -56,11 +56,11 @@ TEST(StopRise, IsNotPlannedWhereTheStopEndsFarther) {
   GainingSpeed one;
   const double rise = 0.5 * one.planned.dds * one.planned.dds / kMargin.jerk;
   EXPECT_FALSE(one.is_planned(-3.1 * rise, 2)) << "no faster, but it lets go later";
-  EXPECT_TRUE(one.is_planned(-0.5 * one.planned.ds, 2));
+  EXPECT_TRUE(one.is_planned(-0.9 * one.planned.ds, 2));
   const auto distance = [&](double ds, double factor) {
     return StopLaw({0, one.planned.ds + ds, factor * one.planned.dds, 0}, kMargin).distance();
   };
-  double low = -0.5 * one.planned.ds, high = 0;
+  double low = -0.9 * one.planned.ds, high = 0;
   for (int n = 0; n < 50; ++n) {
     const double ds = 0.5 * (low + high);
     (distance(ds, 2) > distance(0, 1) ? high : low) = ds;
