@@ -54,7 +54,7 @@ TEST(SiemensProgram, TurnsRotaryAxesWithinATurnAsItsWordsSay) {
     ASSERT_EQ(read.error, "") << words;
     EXPECT_EQ(largest_turn_deg(read) < 11, is_short) << words << " " << largest_turn_deg(read);
     const double turn = units::rad_from_deg(10), tilt = units::rad_from_deg(30);
-    const ClBlock& last = read.motion().back();
+    const ClBlock last = read.motion().back();
     EXPECT_NEAR(axis(last)[2], std::cos(tilt), kTiny) << words;
     EXPECT_NEAR(std::abs(axis(last)[0]), std::sin(tilt) * std::sin(turn), kTiny) << words;
   }
