@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "property/cycle/passed_vertices.hpp"
@@ -142,6 +143,21 @@ TEST(SmoothRetry, TakesAsMuchOfTheInverseTimeOfABlockAsIsLeftOfIt) {
   }
   EXPECT_GT(from_rest_to_rest_s, 0.9 * kBlock_s);
   EXPECT_LT(from_rest_to_rest_s, 0.96 * kBlock_s);
+}
+
+/// Nobody runs what is published: a block that is tried from rest to rest would wait for that.
+TEST(SmoothRetry, IsRefusedAtOnceWhereTheEndOfTheBlockHasNoSolutionInsideTravel) {
+  const Raised one(-0.05);
+  SmoothPlanner planner(one.model);
+  const auto port = std::make_unique<MotionPort>();
+  MotionWriter writer(*port);
+  planner.begin(one.start, one.model.tool_length_mm, 0, {Transition::kSmooth, 0, 0});
+  planner.look_no_further();
+  PlanResult result;
+  for (std::size_t n = 0; n < one.blocks.size() && result.status == PlanStatus::kOk; ++n) {
+    result = planner.plan(one.blocks[n], writer);
+  }
+  EXPECT_EQ(result.status, PlanStatus::kRefused);
 }
 
 TEST(SmoothRetry, IsRefusedWhereTheLinesLeaveTravelToo) {

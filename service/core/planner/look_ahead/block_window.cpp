@@ -23,9 +23,8 @@ void BlockWindow::begin(const LookAheadSlack& slack) noexcept {
 
 void BlockWindow::keep(const ClBlock& block) noexcept {
   if (!is_used_) return;
-  const bool waits = waiting() > 0;
   push(block);
-  if (!waits) pop();
+  pop();
 }
 
 const ClBlock* BlockWindow::find(std::uint64_t sequence) const noexcept {

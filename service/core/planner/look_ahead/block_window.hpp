@@ -50,7 +50,7 @@ class BlockWindow : public PoleLookAhead {
   /// Only where less than kWaiting wait.
   void push(const ClBlock& block) noexcept { blocks_.push_over_oldest(block); }
   void pop() noexcept { ++next_; }
-  /// `block` was planned without having to wait; where others wait by now, it waits too.
+  /// `block` was planned without having to wait; none waits.
   void keep(const ClBlock& block) noexcept;
   /// Block `sequence`, if it is there and may wait again with all behind it; else nullptr.
   [[nodiscard]] const ClBlock* find(std::uint64_t sequence) const noexcept;

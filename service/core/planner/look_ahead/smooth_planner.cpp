@@ -122,12 +122,11 @@ PlanResult SmoothPlanner::plan_one(const ClBlock& block, MotionWriter& writer) n
       w.raise.rest();
       w.plain.set_feed_factor(w.raise.next(block.sequence, writer.feed_override(), 0).label);
     }
-    const bool is_retried = w.retried && block.sequence == w.retried->sequence;
-    PlanResult result = w.plain.plan(is_retried ? w.rest_of(block) : block, writer);
+    PlanResult result = w.plain.plan(w.is_retried(block) ? w.rest_of(block) : block, writer);
     const bool waits = result.status == PlanStatus::kNoRoom;
     w.decided = waits ? Workspace::Decided::kAtRestWithFactor : Workspace::Decided::kNothing;
     if (result.status == PlanStatus::kRefused) {
-      if (is_retried) result.reject = *w.retried;
+      if (w.is_retried(block)) result.reject = *w.retried;
       w.refuse(result);
     } else if (result.status == PlanStatus::kOk) {
       w.note(result.rewind);

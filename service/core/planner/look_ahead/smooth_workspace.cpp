@@ -37,7 +37,7 @@ BandTolerance SmoothPlanner::Workspace::tolerance() const noexcept {
 std::optional<ClBlock> SmoothPlanner::Workspace::smoothable(ClBlock block) const noexcept {
   if (!is_smooth() && model.family != MachineFamily::kRobot) return {};
   if (block.kind != BlockKind::kCut || plain.junction().is_first) return {};
-  if (retried && block.sequence == retried->sequence) return {};
+  if (is_retried(block)) return {};
   if (block.feed_meaning == FeedMeaning::kNone || !(block.feed > 0)) return {};
   const auto unit = UnitVector3::near_unit(to_vector(block.axis));
   if (!unit || !to_vector(block.tip_mm).allFinite()) return {};

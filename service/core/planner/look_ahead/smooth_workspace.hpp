@@ -99,6 +99,10 @@ struct SmoothPlanner::Workspace {
   /// Whether that block may be done from rest to rest: a line whose end has a solution inside
   /// travel, and that is not tried yet. `last`: the block that the run took last.
   [[nodiscard]] bool may_retry(const ClBlock* last) const noexcept;
+  /// Whether that was `block`: it is done from rest to rest.
+  [[nodiscard]] bool is_retried(const ClBlock& block) const noexcept {
+    return retried && block.sequence == retried->sequence;
+  }
   /// The run rests ahead of that block: it is to be done from rest to rest, and what is behind it
   /// planned anew.
   void go_back() noexcept;

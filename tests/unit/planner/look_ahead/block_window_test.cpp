@@ -72,7 +72,7 @@ TEST(BlockWindow, HandsBlocksOutInTheirOrder) {
   EXPECT_EQ(asked.window.first(3)[2].sequence, 2U);
   EXPECT_TRUE(asked.window.first(1).empty()) << "it is planned";
   asked.window.keep(round(9));
-  EXPECT_EQ(asked.window.waiting(), 5U) << "behind those that wait";
+  EXPECT_EQ(asked.window.waiting(), 4U);
   asked.window.begin({});
   EXPECT_EQ(asked.window.waiting(), 0U);
   EXPECT_EQ(asked.window.questions(), 0U);
@@ -99,8 +99,8 @@ TEST(BlockWindow, GoesBackOverNoMoreBlocksThanMayWait) {
   Asked asked;
   for (int n = 0; n < 2100; ++n) asked.window.keep(round(n));
   EXPECT_EQ(asked.window.find(40), nullptr);
-  EXPECT_EQ(asked.window.find(2100 - BlockWindow::kWaiting - 1), nullptr);
-  ASSERT_NE(asked.window.find(2100 - BlockWindow::kWaiting + 1), nullptr);
+  EXPECT_EQ(asked.window.find(2100 - BlockWindow::kWaiting), nullptr);
+  EXPECT_NE(asked.window.find(2100 - BlockWindow::kWaiting + 1), nullptr);
 }
 
 TEST(BlockWindow, AnswersOnceOnlyOneWayGoesOn) {

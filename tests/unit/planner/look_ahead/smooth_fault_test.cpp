@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -99,6 +100,42 @@ TEST(SmoothFault, EndsAheadOfABlockThatLeavesTravelAndNamesIt) {
   EXPECT_EQ(one.run.faulty_block().sequence, 40U + 25);
   EXPECT_EQ(one.run.faulty_block().line, 140U + 25);
   EXPECT_NEAR((rest - kBegin.tip)[0], 50, kTip_mm) << "where the block before ends";
+}
+
+/// Reads a run that leaves travel, and keeps the tail of the window of the `keep_at`th piece: how
+/// many pieces were read. What is behind that rest is published anew, or the run is over there.
+int run_out_by_a_tail(Ran& one, int keep_at) {
+  constexpr int kMaxRounds = 5000;
+  one.reader.set_epoch(one.start.epoch);
+  int pieces = 0;
+  for (int n = 0; n < kMaxRounds; ++n) {
+    one.status = one.run.publish(one.writer);
+    const TimePiece* piece = one.reader.advance();
+    if (piece == nullptr && one.status == Status::kFailed) break;
+    if (piece == nullptr) continue;
+    const bool is_kept = ++pieces == keep_at && !piece->is_tail && one.reader.is_tail_remembered();
+    if (is_kept) one.reader.keep_tail(*one.reader.piece());
+  }
+  return pieces;
+}
+
+/// The fault lies in the middle of a long block, and so does the rest that windows share.
+TEST(SmoothFault, IsOverInWhicheverTailTheMachineComesToRest) {
+  for (const double reach_mm : {131.0, 150.0}) {
+    MachineModel model = bench_machine();
+    ToolPose at = kBegin;
+    at.tip[0] += reach_mm;
+    end_travel_at(at, kBegin, model);
+    int pieces = 1;
+    for (int keep_at = 1; keep_at <= pieces; keep_at += 9) {
+      Ran one(model);
+      for (int n = 0; n < 8 && !one.run.has_fault(); ++n) one.cut_straight(1, 60);
+      ASSERT_TRUE(one.run.has_fault());
+      pieces = std::max(pieces, run_out_by_a_tail(one, keep_at));
+      EXPECT_EQ(one.status, Status::kFailed) << reach_mm << " mm, kept at piece " << keep_at;
+    }
+    EXPECT_GT(pieces, 20);
+  }
 }
 
 /// Publishes what has room, and reads it, until there is no more.
