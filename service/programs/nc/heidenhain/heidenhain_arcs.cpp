@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "meridian/units.hpp"
 
@@ -12,6 +15,7 @@ namespace {
 using cl::refuse;
 
 constexpr double kTurn_deg = 360;
+constexpr double kAtPole_mm = 1e-9;  // nearer, an angle about it is none
 
 void add_word(Line& iso, std::string_view address, double number) {
   Word word;
@@ -76,6 +80,23 @@ cl::Outcome add_polar_end(const State& s, Line& iso) {
   return {};
 }
 
+/// A word of a line about the pole: `absolute`, or `incremental` from `now`, or neither.
+Expected<double, cl::Refusal> polar_value(const Line& iso, std::string_view absolute,
+                                          std::string_view incremental, std::optional<double> now) {
+  const Word* const at = iso.find(absolute);
+  const Word* const by = iso.find(incremental);
+  if (at != nullptr && by != nullptr) {
+    return refuse("LP with " + std::string(absolute) + " and " + std::string(incremental),
+                  "write one of them");
+  }
+  if (at != nullptr) return at->number;
+  if (!now) {
+    return refuse("LP without " + std::string(absolute) + ", but where it begins is not known here",
+                  "write PR and PA", "not known");
+  }
+  return by != nullptr ? *now + by->number : *now;
+}
+
 bool has_sense(const Line& line, std::string_view sense) {
   return std::any_of(line.names.begin(), line.names.end(),
                      [sense](const Line::Name& n) { return n.name == sense; });
@@ -92,6 +113,34 @@ cl::Outcome set_pole(State& s, const Line& line) {
       return refuse("CC from a place that is not known here", "write X and Y of CC as absolute");
     s.modes.pole[k] = is_relative ? *s.position.tip[k] + word->number : word->number;
   }
+  return {};
+}
+
+cl::Outcome prepare_polar_line(const State& s, Line& iso) {
+  const auto& pole = s.modes.pole;
+  const auto& tip = s.position.tip;
+  if (!pole[0] || !pole[1]) {
+    return refuse("a line about the pole (LP) before any CC", "write CC with X and Y before it");
+  }
+  if (iso.find("X") != nullptr || iso.find("Y") != nullptr) {
+    return refuse("LP beside X or Y", "write PR and PA");
+  }
+  std::optional<double> radius_now, angle_now;
+  if (tip[0] && tip[1]) {
+    const double x = *tip[0] - *pole[0], y = *tip[1] - *pole[1];
+    radius_now = std::hypot(x, y);
+    if (*radius_now > kAtPole_mm) angle_now = units::deg_from_rad(std::atan2(y, x));
+  }
+  const auto radius = polar_value(iso, "PR", "IPR", radius_now);
+  if (!radius) return tl::make_unexpected(radius.error());
+  const auto angle = polar_value(iso, "PA", "IPA", angle_now);
+  if (!angle) return tl::make_unexpected(angle.error());
+  const double rad = units::rad_from_deg(*angle);
+  std::erase_if(iso.words, [](const Word& w) {
+    return w.address == "PR" || w.address == "IPR" || w.address == "PA" || w.address == "IPA";
+  });
+  add_word(iso, "X", *pole[0] + *radius * std::cos(rad));
+  add_word(iso, "Y", *pole[1] + *radius * std::sin(rad));
   return {};
 }
 

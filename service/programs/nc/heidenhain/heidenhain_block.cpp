@@ -10,6 +10,7 @@
 #include "service/programs/nc/heidenhain/heidenhain_arcs.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_cycles.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_frames.hpp"
+#include "service/programs/nc/heidenhain/heidenhain_function.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_parameters.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_words.hpp"
 #include "service/programs/nc/remedy.hpp"
@@ -24,13 +25,9 @@ bool has_name(const Line& line, std::string_view name) {
                      [name](const Line::Name& n) { return n.name == name; });
 }
 
-bool mentions(std::string_view text, std::string_view what) {
-  return text.find(what) != std::string_view::npos;
-}
-
 cl::Outcome begin_program(State& s, const Line& line) {
   const std::string_view text = line.names.front().arguments;
-  if (mentions(text, " INCH")) {
+  if (text.find(" INCH") != std::string_view::npos) {
     return refuse("a program in inch, whose feeds count tenths of an inch", "output it in MM");
   }
   const std::size_t begin = text.find_first_not_of(' ');
@@ -38,34 +35,6 @@ cl::Outcome begin_program(State& s, const Line& line) {
     s.cl.summary.program = std::string(text.substr(begin, text.find(' ', begin) - begin));
   }
   return set_unit(s, cl::LengthUnit::kMillimetre);
-}
-
-/// FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR, FUNCTION RESET TCPM.
-cl::Outcome run_function(State& s, const Line& line) {
-  const std::string_view text = line.names.front().arguments;
-  if (mentions(text, "RESET TCPM")) return switch_off(s, line);
-  if (text == " MODE MILL") {
-    s.cl.summary.skip("FUNCTION MODE MILL", line.number);
-    return {};
-  }
-  if (!mentions(text, "TCPM")) {
-    return refuse("FUNCTION" + std::string(text.substr(0, 24)) + " is not run here", kMovesByCam,
-                  "FUNCTION");
-  }
-  if (mentions(text, "CENTER")) {
-    return refuse("FUNCTION TCPM whose points are those of the ball's centre (REFPNT)",
-                  "output the points of the tip");
-  }
-  if (mentions(text, "F CONT")) {
-    s.cl.remarks.warn("F CONT", line.number, [] {
-      return std::string("FUNCTION TCPM F CONT: F is taken as the feed of the tip");
-    });
-  }
-  using Between = Orientation::Between;
-  const bool is_circle = mentions(text, "PATHCTRL VECTOR");
-  auto done = switch_on(s, line, is_circle ? Between::kGreatCircle : Between::kEvenJoints);
-  if (mentions(text, "AXIS SPAT")) s.modes.in_space_deg.emplace();
-  return done;
 }
 
 /// CYCL DEF 9.1 DWELL 0.500, and what of the other cycles says nothing about where.
@@ -100,7 +69,20 @@ cl::Outcome run_cycle_call(State& s, const Line& line) {
   return call_cycle(s, line);
 }
 
-cl::Outcome prepare_motion(State& s, const Line& line, Line& iso) {
+/// Words that this line has no use for, and that would move the tool in another one.
+cl::Outcome check_words_of_others(std::string_view statement, const Line& iso, bool retracts) {
+  for (const std::string_view other : {"PR", "IPR", "PA", "IPA", "MB"}) {
+    if (iso.find(other) == nullptr || (retracts && other == "MB")) continue;
+    return refuse(std::string(other) + " in a line with " + std::string(statement),
+                  other == "MB" ? "write it beside M140"
+                                : "write LP for a line, CP for an arc with PA or IPA alone",
+                  std::string(other));
+  }
+  return {};
+}
+
+cl::Outcome prepare_motion(State& s, const Line& line, Translated& translated) {
+  Line& iso = translated.iso;
   const std::string_view statement = line.names.front().name;
   const bool is_rapid = has_name(line, "FMAX");
   if (has_name(line, "RL") || has_name(line, "RR")) {
@@ -108,7 +90,13 @@ cl::Outcome prepare_motion(State& s, const Line& line, Line& iso) {
   }
   s.modes.motion = is_rapid ? Motion::kRapid : Motion::kLine;
   const bool is_arc = statement == "C" || statement == "CR" || statement == "CP";
-  return is_arc ? prepare_arc(s, line, iso) : cl::Outcome();
+  if (statement == "LP") {
+    if (auto done = prepare_polar_line(s, iso); !done) return done;
+  }
+  if (is_arc) {
+    if (auto done = prepare_arc(s, line, iso); !done) return done;
+  }
+  return check_words_of_others(statement, iso, translated.retracts);
 }
 
 bool is_of_motion(const Word& word) {
@@ -159,13 +147,13 @@ cl::Outcome run_retract(State& s, const Line& line, const Line& iso) {
   return retract(s, iso, by != nullptr ? std::optional(by->number) : std::nullopt);
 }
 
-/// L, LN, C, CR, CP: what moves, with the actions of its line.
+/// L, LN, LP, C, CR, CP: what moves, with the actions of its line.
 cl::Outcome run_words(State& s, const Line& line) {
   Translated translated;
   const std::string_view statement = line.names.front().name;
   if (auto done = translate(s, line, translated); !done) return done;
   Line& iso = translated.iso;
-  if (auto done = prepare_motion(s, line, iso); !done) return done;
+  if (auto done = prepare_motion(s, line, translated); !done) return done;
   if (auto done = take_auto_feed(s, line); !done) return done;
   if (auto done = act_before(s, iso); !done) return done;
   if (translated.retracts) {
@@ -277,9 +265,9 @@ cl::Outcome run_heidenhain(State& s, const Line& line) {
     s.cl.summary.skip(statement, line.number);
     return {};
   }
-  const bool has_words = statement == "L" || statement == "LN" || statement == "C" ||
-                         statement == "CR" || statement == "CP" || statement == "M" ||
-                         statement == "STOP";
+  const bool has_words = statement == "L" || statement == "LN" || statement == "LP" ||
+                         statement == "C" || statement == "CR" || statement == "CP" ||
+                         statement == "M" || statement == "STOP";
   if (!has_words) {
     return refuse(std::string(statement) + ": this word of Klartext is not run here", kMovesByCam,
                   std::string(statement));

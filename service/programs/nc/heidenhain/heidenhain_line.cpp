@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 15> kStatements = {
     "LBL",       "PLANE",    "TCH PROBE", "FN",       "TRANS DATUM"};
 
 /// Statements whose words are cut.
-constexpr std::array<std::string_view, 8> kMotions = {"L",  "LN", "CC",   "CR",
+constexpr std::array<std::string_view, 9> kMotions = {"L",  "LN", "LP",   "CC", "CR",
                                                       "CP", "C",  "STOP", "M"};
 
 bool begins_with(std::string_view text, std::string_view word) {

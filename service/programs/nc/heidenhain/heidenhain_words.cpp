@@ -27,7 +27,8 @@ bool is_feed_of_m128(const Line& line, std::size_t at) {
 
 /// What the words of a line may say; others would change the feed (FU, FZ, FT) or the path.
 bool is_run_here(std::string_view address) {
-  constexpr std::array<std::string_view, 6> kLong = {"TX", "TY", "TZ", "PA", "IPA", "MB"};
+  constexpr std::array<std::string_view, 8> kLong = {"TX",  "TY", "TZ",  "PA",
+                                                     "IPA", "PR", "IPR", "MB"};
   constexpr std::string_view kShort = "XYZABCUVWFSTMR";
   return address.size() == 1 ? kShort.find(address) != std::string_view::npos
                              : std::find(kLong.begin(), kLong.end(), address) != kLong.end();
