@@ -34,6 +34,32 @@ TEST(KlartextParameters, GiveCyclesTheirNumbersAndDoNotEndInTheirDefinition) {
   EXPECT_EQ(read.motion()[3].tip_mm[0], 7);
 }
 
+TEST(KlartextParameters, GivePlanesAndDatumsTheirNumbers) {
+  const std::string written =
+      "4 CYCL DEF 7.0 DATUM SHIFT\n5 CYCL DEF 7.1 X+10\n6 CYCL DEF 7.2 Y-2,5\n"
+      "7 CYCL DEF 7.3 IZ+5\n8 PLANE SPATIAL SPA+30 SPB+0 SPC-45 TURN FMAX\n9 L X+1 Y+2 Z+3 FMAX\n";
+  const std::string by_parameters =
+      "4 CYCL DEF 7.0 DATUM SHIFT\n5 CYCL DEF 7.1 X+Q1\n6 CYCL DEF 7.2 Y-Q2\n"
+      "7 CYCL DEF 7.3 IZ+Q3\n8 PLANE SPATIAL SPA+Q4 SPB+0 SPC-Q5 TURN FMAX\n"
+      "9 L X+1 Y+2 Z+3 FMAX\n";
+  const std::string given = "1 Q1 = 10\n1 Q2 = 2,5\n1 Q3 = 5\n1 Q4 = 30\n1 Q5 = 45\n" + kOver;
+  const ClReaderOptions options = klartext(on(shipped("trunnion-ac")));
+  const ReadText numbers = read_klartext(given + written, options);
+  const ReadText parameters = read_klartext(given + by_parameters, options);
+  ASSERT_EQ(numbers.error, "");
+  ASSERT_EQ(parameters.error, "");
+  const auto expected = numbers.motion(), motion = parameters.motion();
+  ASSERT_GE(expected.size(), 2U);
+  ASSERT_EQ(motion.size(), expected.size());
+  for (std::size_t n = 0; n < motion.size(); ++n) {
+    EXPECT_EQ(tip(motion[n]), tip(expected[n])) << n;
+    EXPECT_EQ(axis(motion[n]), axis(expected[n])) << n;
+  }
+  EXPECT_GT(std::abs(axis(motion.back()).y()), 0.1) << "the plane is tilted";
+  const ReadText unknown = read_klartext(kOver + "3 CYCL DEF 7.1 X+Q1\n", options);
+  EXPECT_NE(unknown.error.find("'+Q1' is no number"), std::string::npos) << unknown.error;
+}
+
 TEST(KlartextParameters, AreRefusedWhereNoNumberIsGiven) {
   for (const auto& [line, says] : std::vector<std::pair<const char*, const char*>>{
            {"L X+Q5", "a Q parameter"},

@@ -8,6 +8,7 @@
 
 #include "service/programs/cl/text/number.hpp"
 #include "service/programs/cl/text/written_text.hpp"
+#include "service/programs/nc/heidenhain/heidenhain_parameters.hpp"
 #include "service/programs/nc/remedy.hpp"
 
 namespace meridian::nc {
@@ -26,8 +27,12 @@ std::string_view take_word(std::string_view& text) {
   return word;
 }
 
-/// A number whose point may be a comma.
-bool is_number(std::string_view text, double& number) {
+/// A number whose point may be a comma, or a parameter that stands for one.
+bool is_number(std::string_view text, const Variables& variables, double& number) {
+  if (const auto given = number_of_parameter(text, variables)) {
+    number = *given;
+    return true;
+  }
   std::string plain(text);
   for (char& c : plain) c = c == ',' ? '.' : c;
   return cl::parse_number(plain, number);
@@ -58,7 +63,8 @@ struct PlaneWords {
   }
 };
 
-Expected<PlaneWords, cl::Refusal> plane_words(const PlaneForm& form, std::string_view text) {
+Expected<PlaneWords, cl::Refusal> plane_words(const PlaneForm& form, std::string_view text,
+                                              const Variables& variables) {
   PlaneWords out;
   const std::string title = "PLANE " + std::string(form.name);
   for (std::string_view word = take_word(text); !word.empty(); word = take_word(text)) {
@@ -67,7 +73,7 @@ Expected<PlaneWords, cl::Refusal> plane_words(const PlaneForm& form, std::string
       const std::string_view address = form.addresses[k];
       if (address.empty() || !word.starts_with(address)) continue;
       double number = 0;
-      if (!is_number(word.substr(address.size()), number)) {
+      if (!is_number(word.substr(address.size()), variables, number)) {
         return refuse(title + ": " + cl::quoted(word) + " has no number", kNumbersByCam, "PLANE");
       }
       out.numbers[k] = number;
@@ -107,7 +113,8 @@ struct DatumWord {
   bool is_incremental = false;
 };
 
-Expected<DatumWord, cl::Refusal> datum_word(std::string_view& text, const std::string& title) {
+Expected<DatumWord, cl::Refusal> datum_word(std::string_view& text, const Variables& variables,
+                                            const std::string& title) {
   std::string_view word = take_word(text);
   DatumWord out;
   out.is_incremental = word.starts_with('I');
@@ -119,7 +126,7 @@ Expected<DatumWord, cl::Refusal> datum_word(std::string_view& text, const std::s
                   "output the shift as X, Y and Z", title);
   }
   const std::string_view rest = word.size() > 1 ? word.substr(1) : take_word(text);
-  if (!is_number(rest, out.number)) {
+  if (!is_number(rest, variables, out.number)) {
     return refuse(title + ": " + cl::quoted(rest) + " is no number", kNumbersByCam, title);
   }
   return out;
@@ -150,7 +157,7 @@ cl::Outcome set_klartext_plane(State& s, const Line& line, std::string_view text
     return refuse("PLANE while tool-centre control is on", "write FUNCTION RESET TCPM before it",
                   "PLANE");
   }
-  const auto words = plane_words(*form, text);
+  const auto words = plane_words(*form, text, s.variables);
   if (!words) return tl::make_unexpected(words.error());
   const auto plane = plane_of(*form, *words);
   if (!plane) return tl::make_unexpected(plane.error());
@@ -161,7 +168,7 @@ cl::Outcome set_klartext_plane(State& s, const Line& line, std::string_view text
 }
 
 cl::Outcome shift_datum(State& s, const Line& line, std::string_view text) {
-  const auto word = datum_word(text, "CYCL DEF 7");
+  const auto word = datum_word(text, s.variables, "CYCL DEF 7");
   if (!word) return tl::make_unexpected(word.error());
   cl::Frame shift = s.frames.shift;
   double& at = shift.origin[static_cast<Eigen::Index>(word->axis)];
@@ -179,7 +186,7 @@ cl::Outcome move_datum(State& s, const Line& line, std::string_view text) {
   }
   cl::Frame shift = s.frames.shift;
   while (text.find_first_not_of(" \t") != std::string_view::npos) {
-    const auto word = datum_word(text, title);
+    const auto word = datum_word(text, s.variables, title);
     if (!word) return tl::make_unexpected(word.error());
     if (word->is_incremental) return refuse(title + " with I", "output absolute values", title);
     shift.origin[static_cast<Eigen::Index>(word->axis)] = word->number;
@@ -204,7 +211,7 @@ cl::Outcome reset_frame_cycle(State& s, const Line& line, std::string_view numbe
       const std::size_t letters = is_scale || word.starts_with("ROT") ? 3 : 1;
       const std::string_view rest = word.size() > letters ? word.substr(letters) : take_word(text);
       double value = 0;
-      if (!is_number(rest, value) || value != (is_scale ? 1 : 0)) {
+      if (!is_number(rest, s.variables, value) || value != (is_scale ? 1 : 0)) {
         return refuse(title + " " + std::string(word.substr(0, 16)) +
                           (is_plane ? ": whether its angles are those of the axes depends on the "
                                       "machine"
