@@ -69,14 +69,5 @@ TEST(KlartextPolarWords, AreRefusedInLinesThatWouldLeaveThemOut) {
   }
 }
 
-TEST(KlartextDwell, RestsForItsSeconds) {
-  const ReadText read = read_klartext(
-      "2 L X+0 Y+0 Z+5 R0 FMAX\n3 FUNCTION DWELL TIME2.5\n4 FUNCTION DWELL TIME 1\n5 L X+9 F60\n");
-  ASSERT_EQ(read.error, "");
-  EXPECT_DOUBLE_EQ(read.summary.dwell_time_s, 3.5);
-  EXPECT_NE(read_klartext("2 FUNCTION DWELL TIME\n").error, "");
-  EXPECT_NE(read_klartext("2 FUNCTION DWELL REV5\n").error, "");
-}
-
 }  // namespace
 }  // namespace meridian::nc

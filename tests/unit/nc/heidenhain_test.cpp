@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "meridian/units.hpp"
 #include "unit/nc/read_nc.hpp"
@@ -265,6 +268,24 @@ TEST(Klartext, RefusesByName) {
   const ReadText inch =
       cl::read_text("0 BEGIN PGM A INCH\n1 L X+0 Y+0 Z+0 FMAX\n2 M30\n", klartext());
   EXPECT_NE(inch.error.find("a program in inch"), std::string::npos);
+}
+
+TEST(Klartext, DwellsForSecondsByFunctionAndByCycle) {
+  const std::string moves = "1 L X+0 Y+0 Z+5 R0 FMAX\n";
+  const ReadText read = read_klartext(
+      moves +
+      "1 Q1 = 0,25\n2 FUNCTION DWELL TIME2.5\n3 FUNCTION DWELL TIME 1,5\n"
+      "4 FUNCTION DWELL TIME+Q1\n5 CYCL DEF 9.0 DWELL TIME\n6 CYCL DEF 9.1 DWELL 0,5\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_DOUBLE_EQ(read.summary.dwell_time_s, 4.75);
+  for (const auto& [line, says] : std::vector<std::pair<const char*, const char*>>{
+           {"TIME", "without a number of seconds"},
+           {"TIME+Q2", "without a number of seconds"},
+           {"TIME-1", "dwell of -1 s"},
+           {"REV5", "FUNCTION DWELL REV5 is not run here"}}) {
+    const ReadText refused = read_klartext(moves + "2 FUNCTION DWELL " + std::string(line) + "\n");
+    EXPECT_NE(refused.error.find(says), std::string::npos) << line << ": " << refused.error;
+  }
 }
 
 TEST(Klartext, KnowsTheFeedsOfOlderControlsWithABlank) {

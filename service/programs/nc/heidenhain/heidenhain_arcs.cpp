@@ -47,12 +47,23 @@ Expected<PolarEnd, cl::Refusal> end_after(const State& s, double angle_deg) {
   return PolarEnd{*s.modes.pole[0] + c * x - sn * y, *s.modes.pole[1] + sn * x + c * y, circles};
 }
 
-/// PA: at that angle from X.
-PolarEnd end_at(const State& s, double angle_deg) {
-  const double radius =
-      std::hypot(*s.position.tip[0] - *s.modes.pole[0], *s.position.tip[1] - *s.modes.pole[1]);
+/// PR, PA: so far from the pole, at that angle from X.
+PolarEnd end_at(const State& s, double radius, double angle_deg) {
   const double rad = units::rad_from_deg(angle_deg);
   return {*s.modes.pole[0] + radius * std::cos(rad), *s.modes.pole[1] + radius * std::sin(rad), 0};
+}
+
+/// Where the tip is, about the pole; the angle only where there is one.
+struct PolarPosition {
+  std::optional<double> radius, angle_deg;
+};
+PolarPosition polar_position(const State& s) {
+  PolarPosition out;
+  if (!s.position.tip[0] || !s.position.tip[1]) return out;
+  const double x = *s.position.tip[0] - *s.modes.pole[0], y = *s.position.tip[1] - *s.modes.pole[1];
+  out.radius = std::hypot(x, y);
+  if (*out.radius > kAtPole_mm) out.angle_deg = units::deg_from_rad(std::atan2(y, x));
+  return out;
 }
 
 /// CP: X and Y of its end by the angle.
@@ -62,7 +73,8 @@ cl::Outcome add_polar_end(const State& s, Line& iso) {
   if ((by == nullptr) == (at == nullptr) || iso.find("X") != nullptr || iso.find("Y") != nullptr) {
     return refuse("CP needs one angle, PA or IPA, and neither X nor Y");
   }
-  if (!s.position.tip[0] || !s.position.tip[1]) {
+  const auto radius = polar_position(s).radius;
+  if (!radius) {
     return refuse("CP, but where it begins is not known here",
                   "write an L with X, Y and Z before it", "not known");
   }
@@ -71,7 +83,7 @@ cl::Outcome add_polar_end(const State& s, Line& iso) {
     return refuse("CP with IPA against its DR", "give both the same sign");
   }
   const auto end = by != nullptr ? end_after(s, by->number)
-                                 : Expected<PolarEnd, cl::Refusal>(end_at(s, at->number));
+                                 : Expected<PolarEnd, cl::Refusal>(end_at(s, *radius, at->number));
   if (!end) return tl::make_unexpected(end.error());
   std::erase_if(iso.words, [](const Word& w) { return w.address == "IPA" || w.address == "PA"; });
   add_word(iso, "X", end->x);
@@ -91,7 +103,8 @@ Expected<double, cl::Refusal> polar_value(const Line& iso, std::string_view abso
   }
   if (at != nullptr) return at->number;
   if (!now) {
-    return refuse("LP without " + std::string(absolute) + ", but where it begins is not known here",
+    return refuse("LP without " + std::string(absolute) +
+                      ": that of the tip is not known here, or the tip stands on the pole",
                   "write PR and PA", "not known");
   }
   return by != nullptr ? *now + by->number : *now;
@@ -117,30 +130,23 @@ cl::Outcome set_pole(State& s, const Line& line) {
 }
 
 cl::Outcome prepare_polar_line(const State& s, Line& iso) {
-  const auto& pole = s.modes.pole;
-  const auto& tip = s.position.tip;
-  if (!pole[0] || !pole[1]) {
+  if (!s.modes.pole[0] || !s.modes.pole[1]) {
     return refuse("a line about the pole (LP) before any CC", "write CC with X and Y before it");
   }
   if (iso.find("X") != nullptr || iso.find("Y") != nullptr) {
     return refuse("LP beside X or Y", "write PR and PA");
   }
-  std::optional<double> radius_now, angle_now;
-  if (tip[0] && tip[1]) {
-    const double x = *tip[0] - *pole[0], y = *tip[1] - *pole[1];
-    radius_now = std::hypot(x, y);
-    if (*radius_now > kAtPole_mm) angle_now = units::deg_from_rad(std::atan2(y, x));
-  }
-  const auto radius = polar_value(iso, "PR", "IPR", radius_now);
+  const PolarPosition now = polar_position(s);
+  const auto radius = polar_value(iso, "PR", "IPR", now.radius);
   if (!radius) return tl::make_unexpected(radius.error());
-  const auto angle = polar_value(iso, "PA", "IPA", angle_now);
+  const auto angle = polar_value(iso, "PA", "IPA", now.angle_deg);
   if (!angle) return tl::make_unexpected(angle.error());
-  const double rad = units::rad_from_deg(*angle);
+  const PolarEnd end = end_at(s, *radius, *angle);
   std::erase_if(iso.words, [](const Word& w) {
     return w.address == "PR" || w.address == "IPR" || w.address == "PA" || w.address == "IPA";
   });
-  add_word(iso, "X", *pole[0] + *radius * std::cos(rad));
-  add_word(iso, "Y", *pole[1] + *radius * std::sin(rad));
+  add_word(iso, "X", end.x);
+  add_word(iso, "Y", end.y);
   return {};
 }
 

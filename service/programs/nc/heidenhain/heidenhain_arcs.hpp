@@ -9,7 +9,7 @@ namespace meridian::nc {
 [[nodiscard]] cl::Outcome set_pole(State& s, const Line& line);
 
 /// LP: a line to a radius (PR, IPR) and an angle from X (PA, IPA) about the pole; what is left out
-/// is that of the tip's place now. `iso` has its end as X and Y then. Refused: no pole, X or Y
+/// stays as the tip has it. `iso` has its end as X and Y then. Refused: no pole, X or Y
 /// beside. Proof: tests/unit/nc/heidenhain_polar_test.cpp.
 [[nodiscard]] cl::Outcome prepare_polar_line(const State& s, Line& iso);
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <optional>
 
-#include "service/programs/cl/text/number.hpp"
 #include "service/programs/cl/text/written_text.hpp"
 #include "service/programs/nc/block.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_arcs.hpp"
@@ -50,9 +49,9 @@ cl::Outcome run_cycle_definition(State& s, const Line& line) {
     return {};
   }
   if (is_frame_cycle(number)) return reset_frame_cycle(s, line, number, text.substr(number.size()));
-  double seconds = 0;
-  if (number == "9.1" && cl::parse_number(text.substr(text.rfind(' ') + 1), seconds)) {
-    return rest(s, line, seconds);
+  if (number == "9.1") {
+    const auto seconds = read_number(text.substr(text.rfind(' ') + 1), s.variables);
+    if (seconds) return rest(s, line, *seconds);
   }
   return define_cycle(s, line, number, text.substr(number.size()));
 }
@@ -90,12 +89,10 @@ cl::Outcome prepare_motion(State& s, const Line& line, Translated& translated) {
   }
   s.modes.motion = is_rapid ? Motion::kRapid : Motion::kLine;
   const bool is_arc = statement == "C" || statement == "CR" || statement == "CP";
-  if (statement == "LP") {
-    if (auto done = prepare_polar_line(s, iso); !done) return done;
-  }
-  if (is_arc) {
-    if (auto done = prepare_arc(s, line, iso); !done) return done;
-  }
+  auto done = statement == "LP" ? prepare_polar_line(s, iso)
+              : is_arc          ? prepare_arc(s, line, iso)
+                                : cl::Outcome();
+  if (!done) return done;
   return check_words_of_others(statement, iso, translated.retracts);
 }
 

@@ -147,15 +147,11 @@ bool take_parameter(std::string_view& text, const Variables& variables, int& par
   text.remove_prefix(equals + 1);
   while (text.starts_with(' ')) text.remove_prefix(1);
   const std::size_t size = std::min(text.find_first_of(" ~\t"), text.size());
-  std::string plain(text.substr(0, size));
-  std::replace(plain.begin(), plain.end(), ',', '.');
+  const std::string_view written = text.substr(0, size);
   text.remove_prefix(size);
-  if (plain == "FMAX") plain = "99999";
-  if (const auto named = number_of_parameter(plain, variables)) {
-    value = *named;
-    return true;
-  }
-  return cl::parse_number(plain.starts_with('+') ? plain.substr(1) : plain, value);
+  const auto read = written == "FMAX" ? kRapidFeed : read_number(written, variables);
+  value = read.value_or(0);
+  return read.has_value();
 }
 
 }  // namespace

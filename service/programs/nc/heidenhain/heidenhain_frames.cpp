@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 
-#include "service/programs/cl/text/number.hpp"
 #include "service/programs/cl/text/written_text.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_parameters.hpp"
 #include "service/programs/nc/remedy.hpp"
@@ -25,17 +24,6 @@ std::string_view take_word(std::string_view& text) {
   const std::string_view word = text.substr(0, size);
   text.remove_prefix(size);
   return word;
-}
-
-/// A number whose point may be a comma, or a parameter that stands for one.
-bool is_number(std::string_view text, const Variables& variables, double& number) {
-  if (const auto given = number_of_parameter(text, variables)) {
-    number = *given;
-    return true;
-  }
-  std::string plain(text);
-  for (char& c : plain) c = c == ',' ? '.' : c;
-  return cl::parse_number(plain, number);
 }
 
 enum class Follow : std::uint8_t { kStay, kTurn };
@@ -72,11 +60,10 @@ Expected<PlaneWords, cl::Refusal> plane_words(const PlaneForm& form, std::string
     for (std::size_t k = 0; k < form.addresses.size(); ++k) {
       const std::string_view address = form.addresses[k];
       if (address.empty() || !word.starts_with(address)) continue;
-      double number = 0;
-      if (!is_number(word.substr(address.size()), variables, number)) {
+      out.numbers[k] = read_number(word.substr(address.size()), variables);
+      if (!out.numbers[k]) {
         return refuse(title + ": " + cl::quoted(word) + " has no number", kNumbersByCam, "PLANE");
       }
-      out.numbers[k] = number;
     }
   }
   for (std::size_t k = 0; k < form.addresses.size() && form.name != "SPATIAL"; ++k) {
@@ -126,9 +113,11 @@ Expected<DatumWord, cl::Refusal> datum_word(std::string_view& text, const Variab
                   "output the shift as X, Y and Z", title);
   }
   const std::string_view rest = word.size() > 1 ? word.substr(1) : take_word(text);
-  if (!is_number(rest, variables, out.number)) {
+  const auto number = read_number(rest, variables);
+  if (!number) {
     return refuse(title + ": " + cl::quoted(rest) + " is no number", kNumbersByCam, title);
   }
+  out.number = *number;
   return out;
 }
 
@@ -210,8 +199,7 @@ cl::Outcome reset_frame_cycle(State& s, const Line& line, std::string_view numbe
       const bool is_scale = word.starts_with("SCL");
       const std::size_t letters = is_scale || word.starts_with("ROT") ? 3 : 1;
       const std::string_view rest = word.size() > letters ? word.substr(letters) : take_word(text);
-      double value = 0;
-      if (!is_number(rest, s.variables, value) || value != (is_scale ? 1 : 0)) {
+      if (read_number(rest, s.variables) != (is_scale ? 1.0 : 0.0)) {
         return refuse(title + " " + std::string(word.substr(0, 16)) +
                           (is_plane ? ": whether its angles are those of the axes depends on the "
                                       "machine"

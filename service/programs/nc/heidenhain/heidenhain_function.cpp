@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "service/programs/cl/text/number.hpp"
+#include "service/programs/nc/heidenhain/heidenhain_parameters.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_words.hpp"
 #include "service/programs/nc/remedy.hpp"
 
@@ -18,14 +18,12 @@ bool mentions(std::string_view text, std::string_view what) {
 }
 
 /// FUNCTION DWELL TIME0.5.
-cl::Outcome dwell(State& s, const Line& line, std::string_view seconds) {
-  double value = 0;
-  while (seconds.starts_with(' ')) seconds.remove_prefix(1);
-  while (seconds.ends_with(' ')) seconds.remove_suffix(1);
-  if (!cl::parse_number(seconds, value)) {
-    return refuse("FUNCTION DWELL TIME without a number of seconds");
-  }
-  return rest(s, line, value);
+cl::Outcome run_dwell(State& s, const Line& line, std::string_view text) {
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  const auto seconds = read_number(text, s.variables);
+  if (!seconds) return refuse("FUNCTION DWELL TIME without a number of seconds", kNumbersByCam);
+  return rest(s, line, *seconds);
 }
 
 }  // namespace
@@ -33,7 +31,7 @@ cl::Outcome dwell(State& s, const Line& line, std::string_view seconds) {
 cl::Outcome run_function(State& s, const Line& line) {
   const std::string_view text = line.names.front().arguments;
   constexpr std::string_view kDwell = " DWELL TIME";
-  if (text.starts_with(kDwell)) return dwell(s, line, text.substr(kDwell.size()));
+  if (text.starts_with(kDwell)) return run_dwell(s, line, text.substr(kDwell.size()));
   if (mentions(text, "RESET TCPM")) return switch_off(s, line);
   if (text == " MODE MILL") {
     s.cl.summary.skip("FUNCTION MODE MILL", line.number);

@@ -45,20 +45,25 @@ std::optional<double> number_of_parameter(std::string_view text, const Variables
   return is_negative ? -*number : *number;
 }
 
+std::optional<double> read_number(std::string_view text, const Variables& variables) {
+  if (const auto given = number_of_parameter(text, variables)) return given;
+  std::string plain(text);
+  std::replace(plain.begin(), plain.end(), ',', '.');
+  double number = 0;
+  return cl::parse_number(plain, number) ? std::optional(number) : std::nullopt;
+}
+
 cl::Outcome assign_parameter(std::string_view text, Variables& variables) {
   const std::string_view whole = trimmed(text);
   const std::string_view name = whole.substr(0, length_of_parameter(whole));
   std::string_view value = trimmed(whole.substr(name.size()));
   const bool is_assignment = !name.empty() && is_free_parameter(name) && value.starts_with('=');
   if (is_assignment) value = trimmed(value.substr(1));
-  std::string plain(value.substr(value.starts_with('+') ? 1 : 0));
-  std::replace(plain.begin(), plain.end(), ',', '.');
-  double number = 0;
-  const auto other = number_of_parameter(value, variables);
-  if (!is_assignment || (!other && !cl::parse_number(plain, number))) {
+  const auto number = read_number(value, variables);
+  if (!is_assignment || !number) {
     return cl::refuse("a Q parameter: " + cl::quoted(whole.substr(0, 16)), kMovesByCam, "Q");
   }
-  return variables.set(name, other.value_or(number));
+  return variables.set(name, *number);
 }
 
 }  // namespace meridian::nc

@@ -24,6 +24,9 @@ namespace meridian::nc {
 [[nodiscard]] std::optional<double> number_of_parameter(std::string_view text,
                                                         const Variables& variables);
 
+/// The same, or the number that `text` is, whose point may be a comma: "+3,5".
+[[nodiscard]] std::optional<double> read_number(std::string_view text, const Variables& variables);
+
 /// "Q5 = +3,5", and what stands after the colon of FN 0: Q5 = +3,5. Expressions are refused.
 [[nodiscard]] cl::Outcome assign_parameter(std::string_view text, Variables& variables);
 
