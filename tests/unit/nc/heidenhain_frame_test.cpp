@@ -79,6 +79,39 @@ TEST(KlartextDatum, ShiftsByTheAxisAndOnTop) {
   EXPECT_EQ(tip(motion[2]), Vector3(1, 2, 1));
 }
 
+/// The first point of a program whose datum is shifted before `preset` names a row.
+ReadText read_preset(const std::string& preset) {
+  return read_klartext("1 TRANS DATUM AXIS X+10 Y+5\n2 " + preset + "\n3 L X+1 Y+2 Z+5 R0 FMAX\n" +
+                       "4 L Z+0 F600\n");
+}
+
+TEST(KlartextPreset, EndsTheDatumShiftUnlessItIsAskedToKeepIt) {
+  for (const char* ends : {"PRESET SELECT #3", "PRESET SELECT NR3 WP",
+                           "CYCL DEF 247 DATUM SETTING Q339=+3 ;DATUM NUMBER"}) {
+    const ReadText read = read_preset(ends);
+    ASSERT_EQ(read.error, "") << ends;
+    EXPECT_EQ(read.summary.nc.work_offset, "CYCL DEF 247 Q339=3") << ends;
+    EXPECT_LT((tip(read.motion().front()) - Vector3(1, 2, 5)).norm(), kTiny) << ends;
+  }
+  const ReadText kept = read_preset("PRESET SELECT #3 KEEP TRANS WP");
+  ASSERT_EQ(kept.error, "");
+  EXPECT_EQ(kept.summary.nc.work_offset, "CYCL DEF 247 Q339=3");
+  EXPECT_LT((tip(kept.motion().front()) - Vector3(11, 7, 5)).norm(), kTiny);
+}
+
+TEST(KlartextPreset, IsRefusedWhereOnlyTheControlKnowsIt) {
+  const std::vector<std::pair<std::string, const char*>> cases = {
+      {"PRESET SELECT NAME \"VISE\"", "PRESET SELECT NAME, which only the control knows"},
+      {"PRESET SELECT", "which only the control knows"},
+      {"PRESET SELECT #3 PAL", "PRESET SELECT with PAL"},
+      {"PRESET SELECT #1.5", "PRESET SELECT that is no row of a table"},
+  };
+  for (const auto& [preset, wanted] : cases) {
+    const ReadText read = read_preset(preset);
+    EXPECT_NE(read.error.find(wanted), std::string::npos) << preset << ": " << read.error;
+  }
+}
+
 TEST(KlartextTools, MayBeCalledByName) {
   const ReadText read =
       read_klartext("1 TOOL CALL \"MILL D10\" Z S5000\n2 L X+1 Y+1 Z+1 R0 FMAX\n");

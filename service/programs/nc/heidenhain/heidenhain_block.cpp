@@ -255,6 +255,7 @@ cl::Outcome run_heidenhain(State& s, const Line& line) {
   if (statement == "CYCL CALL") return run_cycle_call(s, line);
   if (statement == "CC") return set_pole(s, line);
   if (statement == "TRANS DATUM") return move_datum(s, line, line.names.front().arguments);
+  if (statement == "PRESET SELECT") return select_preset(s, line, line.names.front().arguments);
   if (statement == "PLANE") return set_klartext_plane(s, line, line.names.front().arguments);
   // A label alone moves nothing: what calls it is refused.
   const bool is_nothing = statement == "BLK FORM" || statement == "TOOL DEF" || statement == "LBL";

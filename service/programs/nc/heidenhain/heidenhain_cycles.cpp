@@ -8,6 +8,7 @@
 
 #include "service/programs/cl/text/number.hpp"
 #include "service/programs/cl/text/written_text.hpp"
+#include "service/programs/nc/heidenhain/heidenhain_frames.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_parameters.hpp"
 #include "service/programs/nc/remedy.hpp"
 
@@ -176,9 +177,8 @@ cl::Outcome take_cycle_parameters(State& s, const Line& line, std::string_view t
     if (cycle != nullptr) {
       cycle->parameters[parameter] = value;
     } else if (parameter == kQPreset) {
-      const bool is_row = value >= 0 && value < 1000 && value == std::floor(value);
-      if (!is_row) return refuse("CYCL DEF 247 with Q339 that is no row of a table");
-      set_preset(s, line, static_cast<int>(value));
+      auto done = activate_preset(s, line, value, "CYCL DEF 247 with Q339");
+      if (!done) return done;
     }
   }
   return {};

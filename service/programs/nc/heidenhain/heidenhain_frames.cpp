@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -180,6 +181,38 @@ cl::Outcome move_datum(State& s, const Line& line, std::string_view text) {
     if (word->is_incremental) return refuse(title + " with I", "output absolute values", title);
     shift.origin[static_cast<Eigen::Index>(word->axis)] = word->number;
   }
+  return put_datum(s, line, shift, title);
+}
+
+cl::Outcome activate_preset(State& s, const Line& line, double row, const std::string& title) {
+  constexpr double kRows = 1000;
+  if (!(row >= 0 && row < kRows && row == std::floor(row))) {
+    return refuse(title + " that is no row of a table", {}, title);
+  }
+  if (auto done = put_datum(s, line, {}, title); !done) return done;
+  set_preset(s, line, static_cast<int>(row));
+  return {};
+}
+
+cl::Outcome select_preset(State& s, const Line& line, std::string_view text) {
+  const std::string title = "PRESET SELECT";
+  std::string_view row = take_word(text);
+  const std::size_t sign = row.starts_with('#') ? 1 : row.starts_with("NR") ? 2 : 0;
+  const auto number =
+      sign > 0 ? read_number(row.substr(sign), s.variables) : std::optional<double>();
+  if (!number) {
+    return refuse(title + " " + std::string(row.substr(0, 16)) + ", which only the control knows",
+                  "output the number of the row, such as #3", title);
+  }
+  bool keeps_shift = false;
+  for (std::string_view word = take_word(text); !word.empty(); word = take_word(text)) {
+    keeps_shift |= word == "KEEP";
+    if (word == "KEEP" || word == "TRANS" || word == "WP") continue;
+    return refuse(title + " with " + std::string(word.substr(0, 16)) + " is not run here", {},
+                  title);
+  }
+  const cl::Frame shift = s.frames.shift;
+  if (auto done = activate_preset(s, line, *number, title); !done || !keeps_shift) return done;
   return put_datum(s, line, shift, title);
 }
 

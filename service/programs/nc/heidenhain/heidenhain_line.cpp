@@ -19,10 +19,10 @@ constexpr bool is_space(char c) { return c == ' ' || c == '\t'; }
 constexpr bool is_numeral(char c) { return c >= '0' && c <= '9'; }
 
 /// Statements of more words than one, and those whose words are no coordinates.
-constexpr std::array<std::string_view, 15> kStatements = {
-    "BEGIN PGM", "END PGM",  "TOOL CALL", "TOOL DEF", "CYCL DEF",
-    "CYCL CALL", "BLK FORM", "FUNCTION",  "CALL PGM", "CALL LBL",
-    "LBL",       "PLANE",    "TCH PROBE", "FN",       "TRANS DATUM"};
+constexpr std::array<std::string_view, 16> kStatements = {
+    "BEGIN PGM", "END PGM",  "TOOL CALL",   "TOOL DEF",     "CYCL DEF", "CYCL CALL",
+    "BLK FORM",  "FUNCTION", "CALL PGM",    "CALL LBL",     "LBL",      "PLANE",
+    "TCH PROBE", "FN",       "TRANS DATUM", "PRESET SELECT"};
 
 /// Statements whose words are cut.
 constexpr std::array<std::string_view, 9> kMotions = {"L",  "LN", "LP",   "CC", "CR",
