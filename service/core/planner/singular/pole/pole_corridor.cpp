@@ -140,14 +140,26 @@ std::span<const PoleZone> PoleCorridor::find_string(PoleStretch& stretch) noexce
   const PoleTask task{model_, probes_, programmed_, tool_length_mm_, tolerance_rad_, is_exact_};
   PolePass& pass = stretch.pass;
   auto pieces = string_.find(task, pass);
-  double reach = kPoleReach_mm;
-  const auto is_found = [&] { return !pieces.empty() || string_.is_exact_best(); };
-  for (int n = 0; n < kShorter && !is_found() && !may_be_exact(pass); ++n) {
-    reach *= kShorterShare;
-    if (!stretches_.shorten(stretch, reach)) continue;
+  if (!pieces.empty()) return pieces;
+  const bool is_rest_on_pole = probes_.distance_at(pass.end) < kPoleDeviation_rad;
+  pass.needs_string = pass.at_end == PoleJoin::kRest && is_rest_on_pole;
+  const PoleStretch whole = stretch;
+  const auto try_shorter = [&](double reach_mm) {
+    if (!stretches_.shorten(stretch, reach_mm)) return;
     lead_to(pass);
     pieces = string_.find(task, pass);
+  };
+  double reach = kPoleReach_mm;
+  const auto is_found = [&] {
+    return !pieces.empty() ||
+           (!pass.needs_string && (string_.is_exact_best() || may_be_exact(pass)));
+  };
+  for (int n = 0; n < kShorter && !is_found(); ++n) {
+    reach *= kShorterShare;
+    try_shorter(reach);
   }
+  while (pieces.empty() && pass.needs_string && stretches_.narrow_onto_end(stretch)) try_shorter(0);
+  if (pieces.empty() && pass.needs_string) stretch = whole;
   return pieces;
 }
 

@@ -113,7 +113,9 @@ class PoleCorridor {
   /// Drives the redundant joint along the stretch, or cuts the spans there.
   void settle(PoleStretch& stretch) noexcept;
   /// The course of the redundant joint along the stretch, empty: the exact one, or none was found.
-  /// Where no exact path leads, shorter stretches are tried as well.
+  /// Where no exact path leads, shorter stretches are tried as well; also where it ends on the
+  /// pole: there it gives the redundant joint no direction, so a string that ends there is the
+  /// better.
   [[nodiscard]] std::span<const PoleZone> find_string(PoleStretch& stretch) noexcept;
   void lead_to(PolePass& pass) const noexcept;
   [[nodiscard]] bool may_be_exact(const PolePass& pass) const noexcept;

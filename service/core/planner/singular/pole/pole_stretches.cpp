@@ -197,6 +197,20 @@ void PoleStretches::set_end(PoleStretch& out, double core_end) const noexcept {
   out.has_room = out.has_room && room > kMinReach_mm;
 }
 
+bool PoleStretches::narrow_onto_end(PoleStretch& stretch) const noexcept {
+  constexpr double kShare = 0.4, kMin_mm = 5e-4;
+  const double end = stretch.pass.end, close = kZoneTolerances * tolerance_rad_;
+  double& begin = stretch.close_begin;
+  bool is_nearer = false;
+  do {
+    const double length = kShare * (end - begin);
+    if (length < kMin_mm) break;
+    begin = end - length;
+    is_nearer = true;
+  } while (probes_.distance_at(begin) > close);
+  return is_nearer;
+}
+
 bool PoleStretches::shorten(PoleStretch& stretch, double reach_mm) const noexcept {
   PolePass& pass = stretch.pass;
   const double begin = snapped(stretch.close_begin - reach_mm);

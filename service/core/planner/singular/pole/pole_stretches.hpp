@@ -60,6 +60,9 @@ class PoleStretches {
   /// Lets a stretch reach no farther than `reach_mm` to either side of what is close, where the
   /// exact path leads there. False: it does not reach that far.
   [[nodiscard]] bool shorten(PoleStretch& stretch, double reach_mm) const noexcept;
+  /// Lets what is close begin nearer to the end of the stretch, which lies on the pole: where a
+  /// zone's tolerances begin, however far off the last probe is, then nearer. False: no nearer.
+  [[nodiscard]] bool narrow_onto_end(PoleStretch& stretch) const noexcept;
   /// Takes the last answer back.
   void go_back_to(ProbeIndex probe) noexcept { probe_ = probe; }
 
