@@ -73,7 +73,8 @@ struct ChainKinematics {
 /// Returns the chain with its constants worked out, or the reason why it cannot work: the five
 /// joints are not three linear and two rotary ones, a direction is not unit, the rotary axes are
 /// parallel, the tool axis is parallel to rotary axis b (it could not tilt), or the linear
-/// directions at home do not span space. At start-up only.
+/// directions at home do not span space, or the chain does not run from the workpiece to the tool.
+/// At start-up only.
 [[nodiscard]] Expected<ChainKinematics, std::string> describe_chain(
     const std::array<ChainJoint, ChainKinematics::kChainLength>& chain, const Vector3& home_axis,
     const Vector3& gauge_mm);

@@ -40,6 +40,21 @@ std::string sort_joints(ChainKinematics& k) {
   return "";
 }
 
+/// A rotary joint that turns the workpiece lies before every joint that moves the tool; one that
+/// turns the tool behind every joint that moves the workpiece. Slides beside slides change nothing.
+std::string find_misplaced(const std::array<ChainJoint, ChainKinematics::kChainLength>& chain) {
+  for (std::size_t head = 0; head < chain.size(); ++head) {
+    for (std::size_t table = head + 1; table < chain.size(); ++table) {
+      const bool is_wrong = !chain[head].is_table_side && chain[table].is_table_side;
+      if (!is_wrong || !(chain[head].is_rotary || chain[table].is_rotary)) continue;
+      return "the chain runs from the workpiece to the tool, but joint " +
+             std::to_string(head + 1) + ", on the head, stands before joint " +
+             std::to_string(table + 1) + ", under the workpiece";
+    }
+  }
+  return "";
+}
+
 std::string find_fault(const ChainKinematics& k) {
   constexpr double kMin = 1e-3;
   if (k.a.axis.cross(k.b.axis).norm() < kMin) return "the rotary axes are parallel";
@@ -137,6 +152,7 @@ Expected<ChainKinematics, std::string> describe_chain(
   k.home_axis = home_axis.normalized();
   k.gauge_mm = gauge_mm;
   std::string fault = sort_joints(k);
+  if (fault.empty()) fault = find_misplaced(chain);
   if (fault.empty()) fault = find_fault(k);
   if (!fault.empty()) return tl::unexpected(fault);
   face_missed_pole(k);

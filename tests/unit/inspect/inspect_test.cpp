@@ -4,9 +4,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <random>
 #include <sstream>
 
+#include "meridian/units.hpp"
 #include "service/machine/file/machine_file.hpp"
 #include "service/machine/inspect/inspection.hpp"
 #include "service/machine/inspect/joint_pattern.hpp"
@@ -192,6 +194,36 @@ TEST(Slips, AreFoundInDirectionsPivotsTravelLimitsAndFrame) {
   far.joints[0].limits.travel_min = 5;
   far.joints[0].home = 10;
   EXPECT_TRUE(is_warned(far, "cannot stand at zero"));
+}
+
+/// A machine whose joint `at` is changed.
+MachineModel changed(std::size_t at, const std::function<void(JointSpec&)>& change) {
+  MachineModel model = config::load_machine(test::shipped_file("trunnion-ac"));
+  change(model.joints[at]);
+  return model;
+}
+
+TEST(Slips, AreFoundInNumbersOfAnotherUnit) {
+  const auto scaled = [](std::size_t at, double JointLimits::*number, double by) {
+    return changed(at, [&](JointSpec& joint) { joint.limits.*number *= by; });
+  };
+  const auto with_travel = [](std::size_t at, double min, double max) {
+    return changed(at, [&](JointSpec& joint) {
+      joint.is_endless = false;
+      joint.limits.travel_min = min;
+      joint.limits.travel_max = max;
+    });
+  };
+  constexpr std::size_t kX = 0, kTilt = 4;
+  EXPECT_TRUE(is_warned(scaled(kX, &JointLimits::velocity, 60), "to its full velocity and back"));
+  EXPECT_TRUE(is_warned(scaled(kX, &JointLimits::velocity, 0.06), "times as fast as X"));
+  EXPECT_TRUE(is_warned(scaled(kX, &JointLimits::following_error, 1000), "error of X, "));
+  EXPECT_TRUE(is_warned(scaled(kTilt, &JointLimits::velocity, units::rad_from_deg(1)), "deg/s at"));
+  EXPECT_TRUE(is_warned(with_travel(kX, -10.8, 10.8), "X has a travel of 21.6 mm"));
+  const double rad_as_deg = units::rad_from_deg(2.0944);
+  EXPECT_TRUE(is_warned(with_travel(kTilt, -0.01, rad_as_deg), "deg: is the unit right"));
+  EXPECT_TRUE(is_warned(changed(kX, [](JointSpec& joint) { joint.nc_word = "-Y"; }),
+                        "X and Y have one word in NC programs, Y"));
 }
 
 TEST(Slips, AreFactsWhereTheFileSaysThatItsNumbersAreMeasured) {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "meridian/kinematics/limited.hpp"
 #include "meridian/units.hpp"
+#include "service/machine/inspect/calibrate/unit_slips.hpp"
 #include "service/machine/inspect/inspection.hpp"
 #include "service/text/printed.hpp"
 
@@ -88,32 +88,13 @@ void look_at_pivots(const MachineModel& model, const Skeleton& skeleton, Slips& 
   }
 }
 
-void look_at_limits(const MachineModel& model, Slips& out) {
-  constexpr double kLongest_s = 10;
-  for (int i = 0; i < limited_count(model); ++i) {
-    const JointSpec& joint = limited_spec(model, i);
-    const double to_speed = joint.limits.velocity / joint.limits.acceleration;
-    const double to_push = joint.limits.acceleration / joint.limits.jerk;
-    if (to_speed > kLongest_s) {
-      out.warnings.push_back(printed("%s takes %.3g s to its full velocity: are the units right?",
-                                     joint.name.c_str(), to_speed));
-    }
-    if (to_push > kLongest_s || to_push < 1e-9 * static_cast<double>(model.cycle_ns)) {
-      out.warnings.push_back(
-          printed("%s takes %.3g s to its full acceleration, a cycle being %.3g s: are the "
-                  "units right?",
-                  joint.name.c_str(), to_push, 1e-9 * static_cast<double>(model.cycle_ns)));
-    }
-  }
-}
-
 }  // namespace
 
 Slips find_slips(const MachineModel& model, const Skeleton& skeleton) {
   Slips out;
   look_at_directions(model, skeleton, out);
   look_at_pivots(model, skeleton, out);
-  look_at_limits(model, out);
+  find_unit_slips(model, out.warnings);
   return out;
 }
 
