@@ -86,6 +86,11 @@ int run(Options options) {
     std::cerr << options.file << ": warning: " << program->feeds_limited
               << " feeds above the machine's highest were limited to it\n";
   }
+  if (!program->is_spindle_along_z) {
+    std::cerr << options.machine.machine
+              << ": warning: with its rotary joints at zero the spindle does not stand along +Z; "
+                 "the program is right only on a control that counts so\n";
+  }
   if (options.output.empty()) {
     std::cout << program->text << std::flush;
     return std::cout ? kFine : refuse("meridian post: the output cannot be written");

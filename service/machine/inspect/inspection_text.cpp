@@ -104,15 +104,24 @@ std::string missed_pole_text(const MachineModel& model) {
   return printed("the tool axis misses it by %.3g deg; ", units::deg_from_rad(std::abs(off)));
 }
 
+/// Of the two poles that an axis has, where both can be, the one nearer to home.
+Vector3 nearer_pole(const Inspection& in, const MachineModel& model) {
+  const Vector3 pole = pole_direction(model);
+  const bool has_both = model.family == MachineFamily::kChain && model.chain.has_opposite_pole;
+  return has_both && pole.dot(in.home_pose.axis) < 0 ? Vector3(-pole) : pole;
+}
+
 std::string pole_text(const Inspection& in, const MachineModel& model) {
   std::string out;
   const int free = redundant_joint(model);
   if (free < 0) {
     out = model.family == MachineFamily::kRobot
-              ? "singular   wrist point over the base, arm stretched or folded, wrist aligned; "
+              ? "arm        the shoulder lies on the base axis, the wrist on the line of the "
+                "forearm\n"
+                "singular   wrist point over the base, arm stretched or folded, wrist aligned; "
               : "pole       none; ";
   } else {
-    out = "pole       tool axis along " + direction_text(pole_direction(model)) + ": " +
+    out = "pole       tool axis along " + direction_text(nearer_pole(in, model)) + ": " +
           spec_of(model, free).name + " is free there; ";
     out += missed_pole_text(model);
   }

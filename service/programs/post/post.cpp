@@ -261,6 +261,7 @@ Expected<NcProgram, PostError> write_nc(cl::ClReader& reader, const std::string&
   if (!words) return tl::make_unexpected(words.error());
   ProgramParts parts{model, *words, options, std::filesystem::path(name).filename().string(),
                      0,     {}};
+  bool counts_along_z = true;
   if (is_robot_language(options.dialect)) {
     if (auto refusal = refuse_robot(parts)) return tl::make_unexpected(*refusal);
   } else if (options.dialect == Dialect::kJoints) {
@@ -277,6 +278,7 @@ Expected<NcProgram, PostError> write_nc(cl::ClReader& reader, const std::string&
     const auto zero = find_program_zero(model, *words);
     if (!zero) return tl::make_unexpected(zero.error());
     parts.zero = *zero;
+    counts_along_z = is_spindle_along_z(model);
   }
   Post post(tools, parts);
   post.begin();
@@ -291,7 +293,9 @@ Expected<NcProgram, PostError> write_nc(cl::ClReader& reader, const std::string&
     if (const Refusal refusal = post.take(**block)) return tl::make_unexpected(*refusal);
   }
   if (!post.is_ended()) return tl::make_unexpected(PostError{0, "the program has no end"});
-  return post.result();
+  NcProgram out = post.result();
+  out.is_spindle_along_z = counts_along_z;
+  return out;
 }
 
 }  // namespace meridian::post

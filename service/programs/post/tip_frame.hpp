@@ -17,6 +17,10 @@ namespace meridian::post {
 [[nodiscard]] Expected<JointVector, PostError> find_program_zero(const MachineModel& model,
                                                                  const AxisWords& words);
 
+/// Whether the spindle stands along +Z of the machine with every rotary joint at zero, as nearly
+/// every control with tool-centre control takes for granted.
+[[nodiscard]] bool is_spindle_along_z(const MachineModel& model);
+
 /// `pose` (W) as tool-centre words say it: from the origin of W, axes parallel to the machine's.
 [[nodiscard]] ToolPose in_program(const MachineModel& model, const ToolPose& pose);
 

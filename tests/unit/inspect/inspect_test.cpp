@@ -226,6 +226,17 @@ TEST(Slips, AreFoundInNumbersOfAnotherUnit) {
                         "X and Y have one word in NC programs, Y"));
 }
 
+TEST(Pole, ThatIsPrintedIsTheOneNearHome) {
+  for (const char* turned : {"[0, 0, 1]", "[0, 0, -1]"}) {
+    const MachineModel model =
+        machine_with("trunnion-ac", "side = \"table\"\ndirection = [0, 0, 1]",
+                     std::string("side = \"table\"\ndirection = ") + turned);
+    EXPECT_NE(to_text(inspect(model), model).find("pole       tool axis along +z"),
+              std::string::npos)
+        << turned;
+  }
+}
+
 TEST(Slips, AreFactsWhereTheFileSaysThatItsNumbersAreMeasured) {
   const char* machine = "trunnion-ac";
   const std::string off = "point_mm = [0, 0.1, -40]";

@@ -2,7 +2,9 @@
 // Tool-centre words: the whole of a small program in each dialect.
 #include <gtest/gtest.h>
 
+#include "service/programs/post/tip_frame.hpp"
 #include "support/nc_program.hpp"
+#include "support/text_file.hpp"
 #include "unit/post/written.hpp"
 
 namespace meridian {
@@ -120,6 +122,29 @@ TEST(TipProgram, MachinesWhoseWordsDoNotLieAlongTheAxesAreRefused) {
   EXPECT_NE(upside_down.error().message.find("word Z does not move the tool along +Z"),
             std::string::npos)
       << upside_down.error().message;
+}
+
+/// trunnion-ac, but its spindle lies along Y.
+MachineModel horizontal() {
+  std::string text = test::read_text(MERIDIAN_SOURCE_DIR "/deploy/machines/trunnion-ac.toml");
+  const std::string upright = "tool_axis = [0, 0, 1]";
+  text.replace(text.find(upright), upright.size(), "tool_axis = [0, 1, 0]");
+  return config::load_machine(test::TextFile(text).path());
+}
+
+TEST(TipProgram, ASpindleThatDoesNotStandAlongZIsReported) {
+  EXPECT_TRUE(post::is_spindle_along_z(test::shipped("trunnion-ac")));
+  EXPECT_TRUE(post::is_spindle_along_z(test::shipped("nutating-head")));
+  MachineModel model = horizontal();
+  EXPECT_FALSE(post::is_spindle_along_z(model));
+  EXPECT_TRUE(post::find_program_zero(model, *post::AxisWords::of(model)));
+  model.joints[1].nc_word = "Z";
+  model.joints[2].nc_word = "Y";
+  const auto swapped = post::find_program_zero(model, *post::AxisWords::of(model));
+  ASSERT_FALSE(swapped);
+  EXPECT_NE(swapped.error().message.find("the spindle does not stand along its +Z"),
+            std::string::npos)
+      << swapped.error().message;
 }
 
 TEST(TipProgram, WordsOfATurnedPartStayParallelToTheMachine) {
