@@ -120,7 +120,8 @@ void add(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
       "post",
       "Write the NC program of a CL file. Poles and ways between blocks as the service has them "
-      "from rest to rest; begins on the nearest branch and winding; what cannot be expressed is "
+      "from rest to rest; begins on the branch and winding that carry farthest; what cannot be "
+      "expressed is "
       "refused with its line, and nothing is written then (docs/postprocessor.md)");
   add_cl_file(*command, options->file);
   add_machine_options(*command, options->machine, true);

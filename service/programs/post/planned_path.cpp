@@ -35,8 +35,14 @@ namespace {
 /// What lets the redundant joint be turned back; empty where that is not what is missing.
 [[nodiscard]] std::string rewind_remedy(const BlockReject& reject, const MachineModel& model) {
   const bool is_refused = model.rewind_policy == RewindPolicy::kRefuse;
-  if (!is_refused || reject.joint < 0 || reject.joint != redundant_joint(model)) return {};
-  return "; [rewind] policy = \"retract\" in the machine file turns it back off the part";
+  const bool is_rotary = reject.joint >= 0 && reject.joint < limited_count(model) &&
+                         limited_spec(model, reject.joint).is_rotary;
+  if (!is_refused || !is_rotary || redundant_joint(model) < 0) return {};
+  return reject.joint == redundant_joint(model)
+             ? "; [rewind] policy = \"retract\" in the machine file turns it back off the part"
+             : "; [rewind] policy = \"retract\" in the machine file may go on to the other branch "
+               "off "
+               "the part";
 }
 
 [[nodiscard]] std::string reason(const BlockReject& reject, const MachineModel& model) {
@@ -94,11 +100,15 @@ ClBlock PlannedPath::inside_travel(ClBlock block) const {
   return block;
 }
 
-Expected<std::vector<PlannedPiece>, PostError> PlannedPath::plan(const ClBlock& programmed) {
+Expected<std::vector<PlannedPiece>, PostError> PlannedPath::plan(const ClBlock& programmed,
+                                                                 std::span<const ClBlock> ahead) {
   const ClBlock block = inside_travel(programmed);
+  planner_.look_at(ahead);
   const PlanResult result = planner_.plan(block, writer_);
+  planner_.look_at({});
   if (result.status != PlanStatus::kOk) {
-    return tl::make_unexpected(PostError{block.line, reason(result.reject, model_)});
+    const std::uint32_t line = result.reject.line > 0 ? result.reject.line : block.line;
+    return tl::make_unexpected(PostError{line, reason(result.reject, model_)});
   }
   if (result.rewind.is_made() && motion_ != BlockMotion::kDrives) {
     return tl::make_unexpected(PostError{

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,10 @@ class PlannedPath {
   /// A rewind is pieces of MotionKind::kRewind, for blocks that say the drives; else it is refused.
   PlannedPath(const MachineModel& model, ToolTable tools, BlockMotion motion);
 
-  /// The pieces of `block` in order; empty where it does not move.
-  [[nodiscard]] Expected<std::vector<PlannedPiece>, PostError> plan(const ClBlock& programmed);
+  /// The pieces of `programmed` in order; empty where it does not move. `ahead`: it and what
+  /// follows, through which branch and winding are to carry.
+  [[nodiscard]] Expected<std::vector<PlannedPiece>, PostError> plan(const ClBlock& programmed,
+                                                                    std::span<const ClBlock> ahead);
 
   /// The next motion block is approached anew: after a tool change nobody knows the way there.
   void begin_again();

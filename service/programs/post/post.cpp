@@ -7,11 +7,13 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "meridian/kinematics/kinematics.hpp"
 #include "meridian/units.hpp"
+#include "service/programs/post/blocks_ahead.hpp"
 #include "service/programs/post/controls/nc_text.hpp"
 #include "service/programs/post/controls/robot_axes.hpp"
 #include "service/programs/post/controls/robot_name.hpp"
@@ -88,8 +90,10 @@ class Post {
     retract();
   }
 
-  [[nodiscard]] Refusal take(const ClBlock& block) {
+  /// `ahead`: the block and those that follow.
+  [[nodiscard]] Refusal take(const ClBlock& block, std::span<const ClBlock> ahead) {
     program_->at_line(block.line);
+    ahead_ = ahead;
     if (Refusal refusal = write(block)) return refusal;
     const std::string why = program_->refusal();
     if (why.empty()) return {};
@@ -138,7 +142,7 @@ class Post {
   [[nodiscard]] Refusal take_motion(const ClBlock& block) {
     ++motion_blocks_;
     const JointVector before = passed_.joints();
-    auto pieces = passed_.plan(block);
+    auto pieces = passed_.plan(block, ahead_);
     if (!pieces) return pieces.error();
     if (block.kind == BlockKind::kCut && block.feed_meaning == FeedMeaning::kTip &&
         model_.max_feed_mm_per_s > 0 && block.feed > model_.max_feed_mm_per_s) {
@@ -232,7 +236,7 @@ class Post {
   }
 
   [[nodiscard]] Refusal take_tool(const ClBlock& block) {
-    const auto pieces = passed_.plan(block);
+    const auto pieces = passed_.plan(block, {});
     if (!pieces) return pieces.error();
     retract();
     program_->change_tool(static_cast<int>(std::lround(block.value)));
@@ -248,6 +252,7 @@ class Post {
   PlannedPath passed_;
   PieceWriter writer_;
   std::string name_;
+  std::span<const ClBlock> ahead_;
   bool needs_start_ = true, is_retracted_ = false, is_ended_ = false;
   std::uint64_t motion_blocks_ = 0, feeds_limited_ = 0;
 };
@@ -282,15 +287,17 @@ Expected<NcProgram, PostError> write_nc(cl::ClReader& reader, const std::string&
   }
   Post post(tools, parts);
   post.begin();
+  BlocksAhead blocks(reader);
   while (true) {
-    const auto block = reader.next();
+    const auto block = blocks.next();
     if (!block) {
       const cl::ClError& error = block.error();
       return tl::make_unexpected(
           PostError{error.line, error.message + (error.remedy.empty() ? "" : "; " + error.remedy)});
     }
     if (!*block) break;
-    if (const Refusal refusal = post.take(**block)) return tl::make_unexpected(*refusal);
+    if (const Refusal refusal = post.take(**block, blocks.ahead()))
+      return tl::make_unexpected(*refusal);
   }
   if (!post.is_ended()) return tl::make_unexpected(PostError{0, "the program has no end"});
   NcProgram out = post.result();
