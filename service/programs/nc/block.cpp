@@ -76,6 +76,8 @@ std::optional<OneShot::Kind> one_shot_of(GKind kind) {
       return OneShot::Kind::kLocalZero;
     case GKind::kSetting:
       return OneShot::Kind::kSetting;
+    case GKind::kAxesSetting:
+      return OneShot::Kind::kNothing;
     default:
       return std::nullopt;
   }
@@ -135,10 +137,15 @@ cl::Outcome take_code(State& s, const Line& line, const GRow& row, OneShot& shot
   return {};
 }
 
+/// Whether the code says what holds anyway, or how the control smooths.
+bool is_skipped(GKind kind) {
+  return kind == GKind::kNothing || kind == GKind::kSetting || kind == GKind::kAxesSetting;
+}
+
 /// Two of one kind contradict each other, but for those that say nothing.
 cl::Outcome check_kinds(const GRow& row, std::optional<GKind>& motion_kind,
                         std::array<bool, 32>& seen) {
-  if (row.kind == GKind::kNothing || row.kind == GKind::kSetting) return {};
+  if (is_skipped(row.kind)) return {};
   bool& is_seen = seen[static_cast<std::size_t>(row.kind)];
   if (is_seen) return refuse("two G codes of one group in a block", "write one block for each");
   is_seen = true;
@@ -185,12 +192,14 @@ cl::Outcome take_codes(State& s, const Line& line, OneShot& shot) {
                     code_of(word));
     }
     if (auto done = check_kinds(*row, motion_kind, seen); !done) return done;
-    if (row->kind == GKind::kNothing || row->kind == GKind::kSetting) {
+    if (is_skipped(row->kind)) {
       s.cl.summary.skip(code_of(word), line.number);
     }
     if (auto done = take_code(s, line, *row, shot); !done) return done;
   }
-  return {};
+  const bool has_motion = seen[static_cast<std::size_t>(GKind::kMotion)];
+  if (shot.kind != OneShot::Kind::kNothing || !has_motion) return {};
+  return refuse("G5.1 beside G0 to G3", "write it in a block of its own", "G5.1");
 }
 
 bool moves(const Line& line) {

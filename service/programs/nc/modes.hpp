@@ -44,6 +44,12 @@ struct Drilling {
   double top = 0;  ///< Z of what the levels of `hole` count from
 };
 
+/// Which sense a rotary axis that turns without end takes to an absolute word.
+enum class RotarySense : std::uint8_t {
+  kAsWritten,  ///< M127 of Klartext, and everywhere else
+  kShorter     ///< M126 of Klartext
+};
+
 /// What a coordinate counts from.
 enum class Distance : std::uint8_t {
   kAbsolute,    ///< G90, G90.1: the zero
@@ -113,6 +119,7 @@ struct Modes {
   /// AXIS SPAT of Klartext: the last A, B and C, deg, which turn the tool about the fixed x, then
   /// y, then z; nothing: they are positions of rotary axes.
   std::optional<std::array<std::optional<double>, 3>> in_space_deg;
+  RotarySense rotary_sense = RotarySense::kAsWritten;
   bool has_dynamic_offset = false;  ///< G254: the plane is that of the rotary words
 
   [[nodiscard]] bool is_incremental() const noexcept { return distance == Distance::kIncremental; }
@@ -128,6 +135,9 @@ struct Modes {
 struct RotaryAt {
   std::string address;
   std::optional<double> deg;
+  /// An axis that turns without end and was sent to a place within a turn (DC, M126): it stands
+  /// there for the words that follow. `deg` counts on: from 350 by DC(10) to 370, which is 10.
+  bool is_within_turn = false;
 };
 
 /// Where the program has put the tool. Lengths in the unit of the program, from its zero.

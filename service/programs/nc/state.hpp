@@ -81,6 +81,14 @@ struct Target {
   Vector3 axis = Vector3::UnitZ();  ///< in W, without --frame
   bool turns = false;               ///< some rotary word says another angle than before
 };
+/// Numbers without a point are whole units here; older controls count least increments.
+void note_digits(State& s, const Line& line, const Word& word);
+/// Whether the word counts from where the tool or axis stands.
+[[nodiscard]] bool is_relative(const State& s, const Word& word);
+
+// rotary.cpp
+/// The rotary words of a line.
+[[nodiscard]] cl::Outcome take_rotary(State& s, const Line& line, Target& to);
 
 // orientation.cpp
 /// The tool axis of I J K under G43.5, of A3 B3 C3 under TRAORI: from the tip to the spindle, any

@@ -29,6 +29,23 @@ TEST(Cycle, OfHsmWhoseToolIsNotAtItsClearanceIsRefused) {
   EXPECT_NE(read.error.find("--dialect fusion"), std::string::npos) << read.error;
 }
 
+TEST(Cycle, ThatIsStillOnInTheNextToolPathIsRefusedAtItsFirstPoint) {
+  const std::string drill =
+      "TOOL PATH/A,TOOL,T\nCYCLE/DRILL,RAPTO,3.0,FEDTO,-10.0,MMPM,250.\nGOTO/10,0,5\n";
+  const std::string next = "END-OF-PATH\nTOOL PATH/B,TOOL,T\n";
+  const auto read =
+      read_body(drill + next + "GOTO/20,0,5\nGOTO/30,0,5\nEND-OF-PATH\n", written_by(Dialect::kNx));
+  EXPECT_NE(read.error.find("while the CYCLE of the tool path before is still on"),
+            std::string::npos)
+      << read.error;
+  for (const std::string& mended :
+       {drill + "CYCLE/OFF\n" + next + "FEDRAT/MMPM,100\nGOTO/20,0,5\nEND-OF-PATH\n",
+        drill + next + "CYCLE/DRILL,RAPTO,3.0,FEDTO,-10.0,MMPM,250.\nGOTO/20,0,5\nEND-OF-PATH\n",
+        drill + "END-OF-PATH\n"}) {
+    EXPECT_EQ(read_body(mended, written_by(Dialect::kNx)).error, "") << mended;
+  }
+}
+
 TEST(Cycle, OfFusionGivesTheBottomOfAHoleAndItsClearanceAsAZ) {
   // Top at z = 2: depth 10 down to -8, clearance at z = 15, rapid to 9 below that.
   const auto blocks = holes(

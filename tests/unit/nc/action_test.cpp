@@ -62,6 +62,19 @@ TEST(NcActions, PassOverSettingsOfTheControlWithTheirWords) {
   EXPECT_EQ(read.motion().size(), 2U);
 }
 
+TEST(NcActions, PassOverAxesThatASettingNames) {
+  for (const char* setting : {"G05.1 Q2 X0 Y0 Z0", "G5.1 Q3 X0 Y0 Z0 A0 C0", "G5.1 Q0"}) {
+    const ReadText read =
+        read_nc("G0 X10. Y10. Z10.\n" + std::string(setting) + "\nG1 Z0. F100.\n");
+    ASSERT_EQ(read.error, "") << setting;
+    const auto motion = read.motion();
+    ASSERT_EQ(motion.size(), 2U) << setting;
+    EXPECT_EQ(to_vector(motion.back().tip_mm), Vector3(10, 10, 0)) << setting;
+  }
+  EXPECT_NE(read_nc("G0 X10. Y10. Z10.\nG5.1 Q1 G1 X0.\n").error.find("G5.1 beside G0 to G3"),
+            std::string::npos);
+}
+
 TEST(NcActions, DwellInSecondsAndMilliseconds) {
   const auto blocks = actions("G4 X1.5\nG4 P250\nG4 P0.5\n");
   ASSERT_EQ(blocks.size(), 3U);

@@ -88,6 +88,24 @@ TEST(KlartextCycles, NameTheRowOfThePresetTableThatIsTheFrameOfTheStation) {
             std::string::npos);
 }
 
+TEST(KlartextCycles, AreCalledWithActionsBesideThem) {
+  const ReadText read = read_klartext("TOOL CALL 1 Z S900\n" + kAbove + kDrill +
+                                      "CYCL CALL FMAX M13\nL X+5 FMAX\nCYCL CALL M9\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_EQ(read.summary.holes, 2U);
+  const auto is_at = [&](ActionKind action) {
+    return std::find_if(read.blocks.begin(), read.blocks.end(), [&](const ClBlock& block) {
+      return block.kind == BlockKind::kAuxiliary && block.action == action;
+    });
+  };
+  const auto first_cut = std::find_if(read.blocks.begin(), read.blocks.end(),
+                                      [](const auto& b) { return b.kind == BlockKind::kCut; });
+  EXPECT_LT(is_at(ActionKind::kSpindleClockwise), first_cut);
+  EXPECT_LT(is_at(ActionKind::kCoolantFlood), first_cut);
+  EXPECT_LT(first_cut, is_at(ActionKind::kCoolantOff));
+  EXPECT_NE(is_at(ActionKind::kCoolantOff), read.blocks.end());
+}
+
 TEST(KlartextCycles, AreRefusedByName) {
   const std::vector<std::pair<std::string, const char*>> cases = {
       {"CYCL DEF 207 RIGID TAPPING ~", "CYCL DEF 207: a cycle of the control"},

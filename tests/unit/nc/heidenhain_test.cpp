@@ -288,6 +288,26 @@ TEST(Klartext, DwellsForSecondsByFunctionAndByCycle) {
   }
 }
 
+TEST(Klartext, PassesOverCodesOfCornersThatOnlyCompensationHas) {
+  const ReadText read = read_klartext("1 L X+0 Y+0 Z+0 FMAX\n2 L X+1 F9 M97\n3 L X+2 M98\n");
+  EXPECT_EQ(read.error, "");
+  EXPECT_EQ(read.motion().size(), 3U);
+}
+
+TEST(Klartext, NamesWhatIsAnotherLanguageOrUnit) {
+  for (const char* line : {"%PART G71 *", "N10 G00 X+0 *"}) {
+    EXPECT_NE(read_klartext(std::string(line) + "\n").error.find("a line of DIN/ISO"),
+              std::string::npos);
+  }
+  const std::string inch = cl::read_text(
+                               "0 BEGIN PGM P INCH\n1 L X+0 Y+0 Z+0 FMAX\n"
+                               "2 L X+1 F9\n3 END PGM P INCH\n",
+                               klartext())
+                               .error;
+  EXPECT_NE(inch.find("a program in inch"), std::string::npos) << inch;
+  EXPECT_EQ(inch.find("NO UNIT"), std::string::npos) << inch;
+}
+
 TEST(Klartext, KnowsTheFeedsOfOlderControlsWithABlank) {
   const ReadText read = read_klartext(
       "1 TOOL CALL 1 Z S100 F300\n2 L X+0 Y+0 Z+0 R0 F MAX M3\n3 L X+9 F AUTO\n4 L X+8 F600\n5 L "
@@ -301,6 +321,13 @@ TEST(Klartext, KnowsTheFeedsOfOlderControlsWithABlank) {
   EXPECT_DOUBLE_EQ(motion[3].feed, 5);
   EXPECT_EQ(motion[4].kind, BlockKind::kRapid);
   EXPECT_NE(read_klartext("1 L X+0 Y+0 Z+0 FMAX\n2 L X+1 FAUTO\n").error, "");
+  const ReadText called = read_klartext(
+      "1 L X+0 Y+0 Z+0 FMAX\n2 L X+1 F500\n3 TOOL CALL 1 Z S100 F300\n4 L X+2\n5 L X+3 F200\n"
+      "6 TOOL CALL S200 F100\n7 L X+4\n");
+  ASSERT_EQ(called.error, "");
+  for (const auto& [n, feed] : {std::pair{1, 500.0}, {2, 300.0}, {3, 200.0}, {4, 100.0}}) {
+    EXPECT_NEAR(60 * called.motion()[static_cast<std::size_t>(n)].feed, feed, 1e-9) << n;
+  }
 }
 
 TEST(Klartext, SkipsLabelsAndTakesBlockDeleteBeforeTheNumber) {

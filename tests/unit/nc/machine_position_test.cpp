@@ -11,6 +11,14 @@ namespace {
 
 constexpr double kNear_mm = 1e-6;
 
+TEST(SiemensMachinePosition, IsFlaggedWhereTheControlMayAddTheToolsLength) {
+  const auto options = siemens(on(shipped("trunnion-bc")));
+  const std::string supa = "G0 X0 Y0 Z50\nSUPA G0 Z0\n";
+  EXPECT_TRUE(read_siemens("T1 D1 M6\n" + supa, options).warned_of("$MN_G53_TOOLCORR"));
+  EXPECT_FALSE(read_siemens("T1 D1 M6\nG0 X0 Y0 Z50\nSUPA D0 G0 Z0\n", options)
+                   .warned_of("$MN_G53_TOOLCORR"));
+}
+
 TEST(NcMachinePositions, MeanNothingBeforeTheFirstMotion) {
   const ReadText read = read_nc("G91 G28 Z0.\nG90\nG0 X0. Y0. Z5.\n");
   EXPECT_EQ(read.error, "");

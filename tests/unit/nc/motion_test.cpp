@@ -10,6 +10,13 @@
 namespace meridian::nc {
 namespace {
 
+TEST(NcMotion, MayHaveTheNumberOfARadiusBesideIt) {
+  const ReadText read = read_nc("G0 X0. Y0.\nG43 Z25. H01 D01\nG1 X9. D1\n");
+  ASSERT_EQ(read.error, "");
+  EXPECT_EQ(to_vector(read.motion().back().tip_mm), Vector3(9, 0, 25));
+  EXPECT_NE(read_nc("G0 X0. Y0. Z0.\nG1 X9. E1\n").error.find("word E"), std::string::npos);
+}
+
 TEST(NcMotion, HasModalMotionAndCoordinates) {
   const ReadText read = read_nc("G0 X1. Y2. Z3.\nX4.\nG1 Z-1.\nY5. Z6.\n");
   ASSERT_EQ(read.error, "");

@@ -20,6 +20,37 @@ TEST(SiemensVariables, StandForTheNumberThatTheLastLineGave) {
   EXPECT_DOUBLE_EQ(motion[2].feed, 5.0 / 60);
 }
 
+TEST(SiemensVariables, MayStandInBracketsToo) {
+  const ReadText read =
+      read_siemens("R1=5 R2=-3\nG0 X=AC(R1) Y=IC(-R2) Z=AC(7)\nG1 X=IC(R1) F100\n");
+  EXPECT_NE(read.error.find("G91, but where Y stands"), std::string::npos) << read.error;
+  const ReadText known =
+      read_siemens("R1=5 R2=-3\nG0 X0 Y1 Z0\nG0 X=AC(R1) Y=IC(-R2) Z=AC(7)\nG1 X=IC(R1) F100\n");
+  ASSERT_EQ(known.error, "");
+  EXPECT_EQ(tip(known.motion()[1]), Vector3(5, 4, 7));
+  EXPECT_EQ(tip(known.motion()[2]), Vector3(10, 4, 7));
+}
+
+TEST(SiemensProgram, FlagsAFeedGroupThatIsNotTheTip) {
+  const std::string cut = "\nG0 X0 Y0 Z0\nG1 X9 F100\n";
+  EXPECT_TRUE(read_siemens("FGROUP(X,Y)" + cut).warned_of("FGROUP(X,Y): F is taken as the feed"));
+  EXPECT_TRUE(read_siemens("FGROUP(X,Y,Z,B,C)" + cut).warned_of("the control counts these axes"));
+  for (const char* tip : {"FGROUP(X,Y,Z)", "FGROUP(Z, X, Y)", "FGROUP()", "FGREF[A]=10"}) {
+    EXPECT_FALSE(read_siemens(tip + cut).warned_of("FGROUP")) << tip;
+  }
+}
+
+TEST(SiemensProgram, NamesTheValueOrSpindleThatItDoesNotKnow) {
+  for (const auto& [line, says] : {std::pair{"X9 RND=2", "a value for RND"},
+                                   {"X9 CHF=2", "a value for CHF"},
+                                   {"S2=1000 M2=3", "S2= is of another spindle"}}) {
+    const std::string error =
+        read_siemens("G0 X0 Y0 Z0\nG1 F100 " + std::string(line) + "\n").error;
+    EXPECT_NE(error.find(says), std::string::npos) << line << ": " << error;
+  }
+  EXPECT_EQ(read_siemens("G0 X0 Y0 Z0\nFL[B]=500 VELOLIMA[X]=80\nG1 F100 X7\n").error, "");
+}
+
 TEST(SiemensVariables, AreRefusedWithoutANumber) {
   EXPECT_NE(read_siemens("DEF REAL _A\nG0 X=_A Y0 Z0\n").error.find("no line above gives it"),
             std::string::npos);

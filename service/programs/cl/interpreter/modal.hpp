@@ -128,6 +128,7 @@ struct Modal {
   Curve curve;
   std::optional<std::array<double, 3>> forward;  ///< INDIRV
   std::optional<HoleCycle> cycle, last_cycle;
+  bool is_cycle_of_path_before = false;  ///< END-OF-PATH came while it was on
   CycleReturn cycle_return = CycleReturn::kToRetract;  ///< CYCLE/INIT, CYCLE/CLEAR
   std::optional<Vector3> before_cycle;                 ///< where the tool was
   std::uint64_t holes_of_cycle = 0;

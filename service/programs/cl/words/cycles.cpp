@@ -162,6 +162,7 @@ void end_cycle(Modal& m) {
   m.cycle.reset();
   m.before_cycle.reset();
   m.cycle_return = CycleReturn::kToRetract;
+  m.is_cycle_of_path_before = false;
 }
 
 }  // namespace
@@ -199,6 +200,7 @@ Outcome read_cycle_word(Modal& m, const Statement& s) {
              ", which this dialect does not write: its magnitude counts, down from the point";
     });
   }
+  m.is_cycle_of_path_before = false;
   m.next = NextMotion::kFeed;  // a cycle has its own rapids
   m.holes_of_cycle = 0;
   if (!m.before_cycle && m.path.position() == BlockPath::Position::kReached) {
@@ -211,6 +213,11 @@ Outcome run_hole(Modal& m, const Vector3& point, std::uint32_t line) {
   if (m.cycle->kind == HoleKind::kRefused) {
     m.path.lose_position();
     return {};
+  }
+  if (m.is_cycle_of_path_before) {
+    m.path.lose_position();
+    return refuse("a point while the CYCLE of the tool path before is still on: a hole there?",
+                  "write CYCLE/OFF ahead of END-OF-PATH, or CYCLE in this path too", "open cycle");
   }
   Vector3 top = point;
   if (auto done = count_from_top(m, top); !done) return done;

@@ -23,6 +23,7 @@ Outcome read_tool_path(Modal& m, const Statement& s) {
 Outcome read_end_of_path(Modal& m, const Statement&) {
   m.structure.open_path_line = 0;
   m.structure.has_closed = true;
+  m.is_cycle_of_path_before = m.cycle.has_value();
   return {};
 }
 

@@ -42,6 +42,11 @@ bool MachineAxes::is_rotary(std::string_view address) const noexcept {
   return i >= 0 && words_->is_rotary(i);
 }
 
+bool MachineAxes::is_endless(std::string_view address) const noexcept {
+  return is_rotary(address) &&
+         model_.joints[static_cast<std::size_t>(words_->find(address))].is_endless;
+}
+
 std::size_t MachineAxes::rotary_count() const noexcept {
   std::size_t count = 0;
   for (int i = 0; words_ && i < words_->count(); ++i) count += words_->is_rotary(i) ? 1 : 0;

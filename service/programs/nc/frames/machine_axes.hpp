@@ -26,6 +26,8 @@ class MachineAxes {
   [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
   /// Whether `address` is that of a rotary axis.
   [[nodiscard]] bool is_rotary(std::string_view address) const noexcept;
+  /// Whether it is that of an axis that turns without end.
+  [[nodiscard]] bool is_endless(std::string_view address) const noexcept;
 
   /// How many rotary axes the machine has.
   [[nodiscard]] std::size_t rotary_count() const noexcept;

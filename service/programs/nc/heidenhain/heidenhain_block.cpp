@@ -27,6 +27,7 @@ bool has_name(const Line& line, std::string_view name) {
 cl::Outcome begin_program(State& s, const Line& line) {
   const std::string_view text = line.names.front().arguments;
   if (text.find(" INCH") != std::string_view::npos) {
+    (void)set_unit(s, cl::LengthUnit::kInch);  // no unit is missing besides
     return refuse("a program in inch, whose feeds count tenths of an inch", "output it in MM");
   }
   const std::size_t begin = text.find_first_not_of(' ');
@@ -54,18 +55,6 @@ cl::Outcome run_cycle_definition(State& s, const Line& line) {
     if (seconds) return rest(s, line, *seconds);
   }
   return define_cycle(s, line, number, text.substr(number.size()));
-}
-
-/// CYCL CALL, with FMAX at most.
-cl::Outcome run_cycle_call(State& s, const Line& line) {
-  std::string_view text = line.names.front().arguments;
-  while (text.starts_with(' ')) text.remove_prefix(1);
-  while (text.ends_with(' ')) text.remove_suffix(1);
-  if (!text.empty() && text != "FMAX") {
-    return refuse("CYCL CALL " + std::string(text.substr(0, 16)) + " is not run here", kMovesByCam,
-                  "CYCL CALL");
-  }
-  return call_cycle(s, line);
 }
 
 /// Words that this line has no use for, and that would move the tool in another one.
@@ -192,12 +181,16 @@ void act_on_speed(State& s, const Line& line) {
   s.cl.path.act(BlockKind::kAuxiliary, s.cl.spindle.state, s.cl.spindle.speed_rpm, line.number);
 }
 
-/// TOOL CALL 5 Z S6000: the tool, and a speed for it. F is that of FAUTO.
+/// TOOL CALL 5 Z S6000 F500: the tool, a speed for it, and the feed, which FAUTO means later too.
 cl::Outcome call_tool(State& s, const Line& line) {
   Translated translated;
   if (auto done = translate(s, line, translated); !done) return done;
   Line& iso = translated.iso;
-  if (const Word* const feed = iso.find("F")) s.modes.auto_feed = feed->number;
+  if (const Word* const feed = iso.find("F")) {
+    s.modes.auto_feed = feed->number;
+    s.cl.written_feed = {feed->number, s.modes.feed_unit};
+    s.cl.feed.reset();
+  }
   std::erase_if(iso.words, [](const Word& word) { return word.is('F'); });
   const Word* const speed = iso.find("S");
   if (speed != nullptr && s.cl.spindle.state != ActionKind::kSpindleOff && speed->number > 0 &&

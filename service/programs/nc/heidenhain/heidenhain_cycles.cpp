@@ -10,6 +10,7 @@
 #include "service/programs/cl/text/written_text.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_frames.hpp"
 #include "service/programs/nc/heidenhain/heidenhain_parameters.hpp"
+#include "service/programs/nc/heidenhain/heidenhain_words.hpp"
 #include "service/programs/nc/remedy.hpp"
 
 namespace meridian::nc {
@@ -155,6 +156,21 @@ bool take_parameter(std::string_view& text, const Variables& variables, int& par
   return read.has_value();
 }
 
+/// M8 beside CYCL CALL; M13 and M14 are two in one. False: it is none that may stand there.
+bool take_action(Line& actions, std::string_view written) {
+  constexpr std::array<double, 8> kActions = {3, 4, 5, 7, 8, 9, 13, 14};
+  double code = 0;
+  const bool is_code = written.starts_with('M') && cl::parse_number(written.substr(1), code) &&
+                       std::find(kActions.begin(), kActions.end(), code) != kActions.end();
+  if (!is_code) return false;
+  Word word;
+  word.number = code < 10 ? code : code - 10;
+  move_word(actions, word, "M");
+  word.number = 8;
+  if (code > 10) move_word(actions, word, "M");
+  return true;
+}
+
 }  // namespace
 
 cl::Outcome take_cycle_parameters(State& s, const Line& line, std::string_view text) {
@@ -214,6 +230,25 @@ cl::Outcome call_cycle(State& s, const Line& line) {
   const auto drilling = drilling_of(*cycle);
   if (!drilling) return tl::make_unexpected(drilling.error());
   return drill(s, line, *drilling);
+}
+
+cl::Outcome run_cycle_call(State& s, const Line& line) {
+  std::string_view text = line.names.front().arguments;
+  Line actions;
+  actions.number = line.number;
+  while (text.find_first_not_of(' ') != std::string_view::npos) {
+    text.remove_prefix(text.find_first_not_of(' '));
+    const std::string_view written = text.substr(0, text.find(' '));
+    text.remove_prefix(written.size());
+    if (written == "FMAX") continue;
+    if (take_action(actions, written)) continue;
+    return refuse(
+        "CYCL CALL" + std::string(line.names.front().arguments.substr(0, 16)) + " is not run here",
+        kMovesByCam, "CYCL CALL");
+  }
+  if (auto done = act_before(s, actions); !done) return done;
+  if (auto done = call_cycle(s, line); !done) return done;
+  return act_after(s, actions);
 }
 
 }  // namespace meridian::nc

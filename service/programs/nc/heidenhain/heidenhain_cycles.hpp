@@ -18,4 +18,7 @@ namespace meridian::nc {
 /// tests/unit/nc/heidenhain_cycle_test.cpp.
 [[nodiscard]] cl::Outcome call_cycle(State& s, const Line& line);
 
+/// A line with CYCL CALL: FMAX and the actions M3, M8 and their kin may stand in it.
+[[nodiscard]] cl::Outcome run_cycle_call(State& s, const Line& line);
+
 }  // namespace meridian::nc

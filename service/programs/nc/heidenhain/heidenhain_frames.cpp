@@ -126,7 +126,8 @@ Expected<DatumWord, cl::Refusal> datum_word(std::string_view& text, const Variab
 cl::Outcome put_datum(State& s, const Line& line, const cl::Frame& shift,
                       const std::string& title) {
   if (s.frames.tilt != Tilt::kNone && shift.origin != s.frames.shift.origin) {
-    return refuse(title + " in a tilted plane", "write it before PLANE", title);
+    return refuse(title + " in a tilted plane, along its axes",
+                  "output the points of the plane without it", title);
   }
   set_shift(s, line, shift);
   return {};

@@ -69,6 +69,10 @@ class KlartextCutter {
   }
 
   cl::Outcome cut_statement() {
+    const bool is_numbered = rest_.size() > 1 && rest_.front() == 'N' && is_numeral(rest_[1]);
+    if (is_numbered || rest_.front() == '%') {
+      return refuse("a line of DIN/ISO, which is not Klartext", "output Klartext (.h)", "DIN/ISO");
+    }
     for (const std::string_view statement : kStatements) {
       if (!begins_with(rest_, statement)) continue;
       line_.names.push_back({statement, rest_.substr(statement.size())});

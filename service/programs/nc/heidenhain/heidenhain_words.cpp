@@ -12,9 +12,10 @@ namespace {
 
 using cl::refuse;
 
-/// M codes of the control that say how it moves and nothing about where.
-constexpr std::array kSilent = {90,  101, 102, 107, 108, 109, 110, 111, 112, 115, 116,
-                                117, 120, 124, 126, 127, 137, 138, 141, 145, 148, 149};
+/// M codes of the control that say how it moves and nothing about where; M97 and M98 are of corners
+/// under RL and RR, which are refused.
+constexpr std::array kSilent = {90,  97,  98,  101, 102, 107, 108, 109, 110, 111, 112,
+                                115, 116, 117, 120, 124, 137, 138, 141, 145, 148, 149};
 /// Those that put points elsewhere, or whose words are neither coordinates nor a feed.
 constexpr std::array kCodesNotRun = {92, 103, 114, 118, 130, 136, 143, 144};
 
@@ -112,6 +113,8 @@ cl::Outcome translate(State& s, const Line& line, Translated& out) {
         is_m && word.number >= 0 && word.number < 1e6 ? static_cast<int>(word.number) : -1;
     if (std::find(kSilent.begin(), kSilent.end(), code) != kSilent.end()) {
       s.cl.summary.skip("M" + std::string(word.digits), line.number);
+    } else if (code == 126 || code == 127) {
+      s.modes.rotary_sense = code == 126 ? RotarySense::kShorter : RotarySense::kAsWritten;
     } else if (code == 94) {
       reduce_rotary(s);
     } else if (code == 140) {

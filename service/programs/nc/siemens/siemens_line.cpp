@@ -19,9 +19,9 @@ using cl::refuse;
 constexpr bool is_name_sign(char c) { return cl::is_letter(c) || is_digit(c) || c == '_'; }
 
 /// Values that say how exactly and how hard the control moves: tolerances, jerk, what F refers to.
-constexpr std::array<std::string_view, 12> kSettings = {"ACC",  "ADIS",  "ADISPOS", "ATOL",
-                                                        "CTOL", "FGREF", "FIFOLEN", "JERKLIM",
-                                                        "LIMS", "OTOL",  "STOLF",   "VELOLIM"};
+constexpr std::array<std::string_view, 16> kSettings = {
+    "ACC", "ACCLIMA", "ADIS",     "ADISPOS", "ATOL", "CTOL",  "FGREF",   "FIFOLEN",
+    "FL",  "JERKLIM", "JERKLIMA", "LIMS",    "OTOL", "STOLF", "VELOLIM", "VELOLIMA"};
 
 /// X=AC(10), C=DC(350): how a number is meant in this block alone.
 struct DistanceName {
@@ -128,7 +128,7 @@ class SiemensCutter {
       if (name.name != "CR" && name.name != "TURN" && name.name != "RPL") {
         return refuse("a value for " + std::string(name.name.substr(0, 16)) +
                           ", which the control alone knows",
-                      kMovesByCam, "assignment");
+                      kMovesByCam, "value for " + std::string(name.name.substr(0, 16)));
       }
       return cut_value(word);
     }
@@ -232,9 +232,7 @@ class SiemensCutter {
   cl::Outcome cut_value(Word& word) {
     skip_blanks();
     if (!rest_.empty() && rest_.front() == '"') return cut_text(word);
-    const bool has_sign = rest_.size() > 1 && rest_.front() == '-';
-    const char first = rest_.empty() ? ' ' : rest_[has_sign ? 1 : 0];
-    if (!cl::is_letter(first) && first != '_') return cut_number(word);
+    if (!is_named(rest_)) return cut_number(word);
     const std::string_view how = next_name();
     const auto* const row = std::find_if(kDistances.begin(), kDistances.end(),
                                          [how](const DistanceName& d) { return d.name == how; });
@@ -247,9 +245,16 @@ class SiemensCutter {
     }
     if (!take('(')) return refuse(std::string(how) + " without its bracket");
     skip_blanks();
-    if (auto done = cut_number(word); !done) return done;
+    if (auto done = is_named(rest_) ? cut_named_number(word) : cut_number(word); !done) return done;
     if (!take(')')) return refuse(std::string(how) + " without its closing bracket");
     return {};
+  }
+
+  /// Whether a name stands in place of a number: _X_HOME, -R1, AC(10).
+  [[nodiscard]] static bool is_named(std::string_view text) {
+    const bool has_sign = text.size() > 1 && text.front() == '-';
+    const char first = text.empty() ? ' ' : text[has_sign ? 1 : 0];
+    return cl::is_letter(first) || first == '_';
   }
 
   [[nodiscard]] std::string_view next_name() const {

@@ -32,6 +32,7 @@ constexpr std::array kNames = std::to_array<NameRow>({
     {"ORIMCS", NameKind::kMachine},
     {"SUPA", NameKind::kMachinePosition},
     {"ACC", NameKind::kNothing},
+    {"ACCLIMA", NameKind::kNothing},
     {"ADIS", NameKind::kNothing},
     {"ADISPOS", NameKind::kNothing},
     {"ATOL", NameKind::kNothing},
@@ -66,14 +67,17 @@ constexpr std::array kNames = std::to_array<NameRow>({
     {"DYNSEMIFIN", NameKind::kNothing},
     {"FFWOF", NameKind::kNothing},
     {"FFWON", NameKind::kNothing},
+    {"FENDNORM", NameKind::kNothing},
     {"FGREF", NameKind::kNothing},
     {"FGROUP", NameKind::kNothing},
     {"FIFOCTRL", NameKind::kNothing},
     {"FIFOLEN", NameKind::kNothing},
+    {"FL", NameKind::kNothing},
     {"FNORM", NameKind::kNothing},
     {"GROUP_BEGIN", NameKind::kNothing},
     {"GROUP_END", NameKind::kNothing},
     {"JERKLIM", NameKind::kNothing},
+    {"JERKLIMA", NameKind::kNothing},
     {"KONT", NameKind::kNothing},
     {"LIMS", NameKind::kNothing},
     {"MSG", NameKind::kNothing},
@@ -100,6 +104,7 @@ constexpr std::array kNames = std::to_array<NameRow>({
     {"TOROTOF", NameKind::kNothing},
     {"UPATH", NameKind::kNothing},
     {"VELOLIM", NameKind::kNothing},
+    {"VELOLIMA", NameKind::kNothing},
     {"WALIMOF", NameKind::kNothing},
     {"WALIMON", NameKind::kNothing},
     {"WORKPIECE", NameKind::kNothing},
@@ -192,6 +197,21 @@ cl::Outcome refuse_row(const NameRow& row) {
                 std::string(row.name));
 }
 
+/// FGROUP(X,Y): F counts along these axes alone.
+void warn_of_feed_group(State& s, const Line& line, const Line::Name& name) {
+  if (name.name != "FGROUP") return;
+  std::string axes;
+  for (const char c : name.arguments) {
+    if (cl::is_letter(c)) axes += c;
+  }
+  std::sort(axes.begin(), axes.end());
+  if (axes.empty() || axes == "XYZ") return;
+  s.cl.remarks.warn("FGROUP", line.number, [&name] {
+    return "FGROUP(" + std::string(name.arguments.substr(0, 24)) +
+           "): F is taken as the feed of the tip along X, Y and Z; the control counts these axes";
+  });
+}
+
 cl::Outcome take_drilling(State& s, const Line::Name& name, NameOutcome& out) {
   const auto drilling = siemens_drilling(s, name);
   if (!drilling) return tl::make_unexpected(drilling.error());
@@ -229,6 +249,7 @@ cl::Outcome take_name(State& s, const Line& line, const Line::Name& name, NameOu
       return {};
     case NameKind::kNothing:
       s.cl.summary.skip(name.name, line.number);
+      warn_of_feed_group(s, line, name);
       return {};
     case NameKind::kFrame:
       out.has_frame = true;
@@ -276,6 +297,11 @@ cl::Outcome check_siemens_addresses(const State& s, const Line& line) {
     const bool is_known = word.address.size() == 1 || !word.may_be_rotary() ||
                           (s.axes && s.axes->is_rotary(word.address));
     if (is_known) continue;
+    constexpr std::string_view kOfSpindles = "SM";
+    if (kOfSpindles.find(word.address.front()) != std::string_view::npos) {
+      return refuse(printed(word.address) + "= is of another spindle, which is not run here",
+                    "output the words of the spindle that cuts alone", "other spindle");
+    }
     return refuse("address " + printed(word.address) + "= is not understood",
                   "orientation as A3= B3= C3= or as rotary words", "address=");
   }

@@ -32,9 +32,9 @@ constexpr std::array kG = std::to_array<GRow>({
     {20, kMotion, of(Motion::kClockwise)},
     {30, kMotion, of(Motion::kCounterClockwise)},
     {40, kDwell},
-    {50, kSetting},  // G05 P10000: look-ahead
-    {51, kSetting},  // G05.1 Q1
-    {80, kSetting},  // G08 P1
+    {50, kSetting},      // G05 P10000: look-ahead
+    {51, kAxesSetting},  // G05.1 Q1
+    {80, kSetting},      // G08 P1
     {90, kNothing},
     {100, kRefused, 0, kOffsets},
     {110, kNothing},

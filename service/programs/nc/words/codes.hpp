@@ -29,7 +29,8 @@ enum class GKind : std::uint8_t {
   kLocalZero,        ///< G52
   kDynamicOffset,    ///< of Haas; `value`: 1 for G254, 0 for G255
   kNothing,          ///< says what holds anyway, or how the control smooths
-  kSetting,          ///< the same, with words of its own (G5.1 Q1)
+  kSetting,          ///< the same, with words of its own (G5 P10000)
+  kAxesSetting,      ///< the same, whose axis words name axes (G5.1 Q2 X0 Y0 Z0)
   kRefused
 };
 

@@ -121,6 +121,13 @@ cl::Outcome move_to_machine_position(State& s, const Line& line, MachinePosition
            ": a straight rapid to where the machine file has that place; see that nothing is in "
            "the way";
   });
+  if (s.modes.language == Language::kSiemens && s.modes.control == Control::kLength) {
+    s.cl.remarks.warn("SUPA and D", line.number, [] {
+      return std::string(
+          "SUPA with a tool offset in force: taken as a position of the spindle; where machine "
+          "data $MN_G53_TOOLCORR is 0 the control adds the length of the tool");
+    });
+  }
   const Vector3 written = as_written(s, reached->pose.tip);
   const auto pose = in_path(s, {written, reached->pose.axis.normalized()});
   if (!pose) return tl::make_unexpected(pose.error());

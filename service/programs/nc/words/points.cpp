@@ -17,58 +17,6 @@ using cl::refuse;
 constexpr std::array<std::string_view, 3> kTip = {"X", "Y", "Z"};
 constexpr double kSameAxis = 1e-5;  // digits of the numbers that give a tool axis
 
-/// Numbers without a point are whole units here; older controls count least increments.
-void note_digits(State& s, const Line& line, const Word& word) {
-  s.cl.summary.decimals = std::max(s.cl.summary.decimals, word.decimals);
-  if (word.has_point || word.number == 0) return;
-  s.cl.remarks.warn("point", line.number, [&word] {
-    return std::string(word.address) + std::string(word.digits) +
-           " has no decimal point: taken as whole millimetres, inches or degrees; some controls "
-           "count least increments there";
-  });
-}
-
-void set_rotary(ToolPosition& position, std::string_view address, double deg) {
-  const auto at = std::find_if(position.rotary.begin(), position.rotary.end(),
-                               [&](const RotaryAt& r) { return r.address == address; });
-  if (at != position.rotary.end()) {
-    at->deg = deg;
-  } else {
-    position.rotary.push_back({std::string(address), deg});
-  }
-}
-
-std::optional<double> rotary_of(const ToolPosition& position, std::string_view address) {
-  for (const RotaryAt& at : position.rotary) {
-    if (at.address == address) return at.deg;
-  }
-  return std::nullopt;
-}
-
-bool is_relative(const State& s, const Word& word) {
-  return word.distance_mode == Word::DistanceMode::kModal
-             ? s.modes.is_incremental()
-             : word.distance_mode == Word::DistanceMode::kIncremental;
-}
-
-/// Where a rotary word leads from `before`, deg.
-double rotary_end(const Word& word, double before, bool is_incremental) {
-  using enum Word::DistanceMode;
-  constexpr double kSameAngle_deg = 1e-9;  // rounding, which would make a whole turn of none
-  const double off = std::remainder(word.number - before, 360.0);
-  const double turn = std::abs(off) > kSameAngle_deg ? off : 0;
-  switch (word.distance_mode) {
-    case kShortest:
-      return before + turn;
-    case kUpwards:
-      return before + (turn < 0 ? turn + 360 : turn);
-    case kDownwards:
-      return before + (turn > 0 ? turn - 360 : turn);
-    default:
-      return is_incremental ? before + word.number : word.number;
-  }
-}
-
 cl::Outcome take_tip(State& s, const Line& line, Target& to) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Word* const word = line.find(kTip[k]);
@@ -82,36 +30,6 @@ cl::Outcome take_tip(State& s, const Line& line, Target& to) {
     }
     at = is_incremental ? *at + word->number : word->number;
   }
-  return {};
-}
-
-cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
-  bool has_any = false;
-  for (const Word& word : line.words) {
-    if (!word.may_be_rotary()) continue;
-    const std::string address(word.address);
-    if (s.modes.control == Control::kVector) {
-      return refuse("rotary word " + address + " under G43.5, where I J K give the tool axis",
-                    "output G43.4, or I J K alone");
-    }
-    if (s.axes && s.axes->refusal().empty() && !s.axes->is_rotary(word.address)) {
-      return refuse("the machine has no rotary axis with the NC word " + address,
-                    "check nc_word in the machine file", "no axis " + address);
-    }
-    note_digits(s, line, word);
-    const std::optional<double> before = rotary_of(to.position, address);
-    const bool is_incremental = is_relative(s, word);
-    if (is_incremental && !before) {
-      return refuse("G91, but where " + address + " stands is not known here",
-                    "write G90 and where it goes before it");
-    }
-    const double deg = rotary_end(word, before.value_or(0), is_incremental);
-    if (!(std::abs(deg) <= 1e6)) return refuse("an angle beyond 1e6 deg", kMovesByCam);
-    to.turns = to.turns || before.value_or(0) != deg;
-    set_rotary(to.position, address, deg);
-    has_any = true;
-  }
-  if (has_any) note_rotary_words(s, to.position);
   return {};
 }
 
@@ -187,10 +105,9 @@ cl::Outcome check_words(const State& s, const Line& line, bool is_arc) {
                         : "word Q beside a point is not understood",
                   leans ? "output the tool axis itself, and Q0" : "leave it out");
   }
-  const bool is_fanuc = s.modes.language == Language::kFanuc;  // else D is the tool's own offset
-  if (line.find("E") != nullptr || (is_fanuc && line.find("D") != nullptr)) {
-    return refuse("word E or D in a motion block is not understood",
-                  "write it in a block of its own");
+  // D is the number of a radius: without G41 and G42, which are refused, it says nothing.
+  if (line.find("E") != nullptr) {
+    return refuse("word E in a motion block is not understood", "write it in a block of its own");
   }
   return {};
 }
@@ -248,6 +165,22 @@ cl::Outcome move_plainly(State& s, const Line& line, const Target& to) {
 }
 
 }  // namespace
+
+void note_digits(State& s, const Line& line, const Word& word) {
+  s.cl.summary.decimals = std::max(s.cl.summary.decimals, word.decimals);
+  if (word.has_point || word.number == 0) return;
+  s.cl.remarks.warn("point", line.number, [&word] {
+    return std::string(word.address) + std::string(word.digits) +
+           " has no decimal point: taken as whole millimetres, inches or degrees; some controls "
+           "count least increments there";
+  });
+}
+
+bool is_relative(const State& s, const Word& word) {
+  return word.distance_mode == Word::DistanceMode::kModal
+             ? s.modes.is_incremental()
+             : word.distance_mode == Word::DistanceMode::kIncremental;
+}
 
 bool ToolPosition::is_turned() const noexcept {
   return is_by_control || std::any_of(rotary.begin(), rotary.end(), [](const RotaryAt& at) {

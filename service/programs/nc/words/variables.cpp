@@ -71,7 +71,7 @@ cl::Outcome Variables::set(std::string_view name, double number) {
   if (!(is_r_parameter(name) || name.starts_with('Q')) || numbers_.size() >= kMax) {
     return refuse(
         "a value for " + std::string(name.substr(0, 32)) + ", which the control alone knows",
-        kNumbersByCam, "assignment");
+        kNumbersByCam, "value for " + std::string(name.substr(0, 32)));
   }
   numbers_.emplace(std::string(name), number);
   return {};
