@@ -2,6 +2,7 @@
 #include "service/machine/file/section.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -76,6 +77,17 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+/// velocity_mm_per_min for velocity_mm_per_s: one quantity by its name, another unit behind it.
+bool is_in_other_unit(std::string_view key, std::string_view other) {
+  const std::size_t unit = std::min(key.find("_mm"), key.find("_deg"));
+  if (unit == std::string_view::npos || other == key) return false;
+  constexpr std::array<std::string_view, 6> kUnits = {"_mm", "_deg", "_rad", "_m", "_in", "_rpm"};
+  const bool is_unit = std::any_of(kUnits.begin(), kUnits.end(), [&](std::string_view one) {
+    return other.size() > unit && other.substr(unit).starts_with(one);
+  });
+  return other.starts_with(key.substr(0, unit)) && is_unit;
+}
+
 }  // namespace
 
 toml::table parse_file(const std::filesystem::path& path) {
@@ -143,13 +155,18 @@ const toml::node& Section::need(std::string_view key, const std::string& allowed
   const toml::node* node = find(key);
   if (node != nullptr) return *node;
   std::string advice(remedy);
+  std::string_view in_other_unit;
   for (const auto& [other, ignored] : *table_) {
     if (key.size() > 5 && distance(key, other.str()) == 1) {  // l3_mm and l4_mm are both right
       advice = "did you mean it by " + std::string(other.str()) + ", line " +
                std::to_string(other.source().begin.line) + "?";
     }
+    if (is_in_other_unit(key, other.str())) in_other_unit = other.str();
   }
   if (advice.empty()) advice = name_.empty() ? "add it to the file" : "add it to [" + name_ + "]";
+  if (!in_other_unit.empty()) {
+    advice += "; is " + std::string(in_other_unit) + " the same in another unit? Convert it";
+  }
   refuse(key, allowed, advice);
 }
 

@@ -185,6 +185,19 @@ struct Lines {
   }
 };
 
+/// Mastercam's NCI: lines in pairs, a code (1050: the version, 1000 to 1025: the head of a path)
+/// and its numbers.
+bool is_nci(std::string_view text) {
+  const std::string_view first = text.substr(0, text.find('\n'));
+  const std::string_view code = first.substr(0, first.find_last_not_of(' ') + 1);
+  const bool is_head = code.size() == 4 && (code == "1050" || (code >= "1000" && code <= "1025"));
+  if (!is_head || code.find_first_not_of("0123456789") != std::string_view::npos) return false;
+  const std::string_view rest = text.substr(std::min(first.size() + 1, text.size()));
+  const std::string_view second = rest.substr(0, rest.find('\n'));
+  return second.size() > 2 && second.find(' ') != std::string_view::npos &&
+         second.find_first_not_of("+-.0123456789 ") >= std::min(second.size(), second.find('"'));
+}
+
 constexpr std::string_view kHeidenhain = "a Heidenhain NC program (BEGIN PGM)";
 
 std::string name_of(const std::string& text, const Lines& lines) {
@@ -221,6 +234,7 @@ Recognised recognise_foreign(std::string_view head) {
     return {"binary data", true, false, Dialect::kUnknown, {}, {}};
   }
   const std::string text = in_capitals(head);
+  if (is_nci(text)) return {"a Mastercam NCI file", true, false, Dialect::kUnknown, {}, {}};
   const Lines lines(text);
   if (lines.cl > 0) return {{}, true, false, Dialect::kUnknown, {}, {}};
   if (has(text, "BEGIN PGM")) {

@@ -2,6 +2,7 @@
 #include "service/programs/nc/nc_program.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "service/programs/cl/text/letters.hpp"
 #include "service/programs/nc/block.hpp"
@@ -34,6 +35,12 @@ std::string trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(' ');
   if (begin == std::string_view::npos) return "";
   return std::string(text.substr(begin, kLongestTitle));
+}
+
+/// What a refused line may have said: without it nothing is known of what this line lacks.
+bool may_come_of_another(const cl::Refusal& refusal) {
+  constexpr std::array<std::string_view, 4> kLacks = {"no G0", "no F", "not known", "not given"};
+  return std::find(kLacks.begin(), kLacks.end(), refusal.group) != kLacks.end();
 }
 
 }  // namespace
@@ -88,8 +95,9 @@ cl::ProgramSource::Result NcProgram::read(Blocks& out) {
   state_.cl.path.give_to(out);
   if (auto done = take(text); !done) {
     out.resize(before);
-    ++state_.cl.refusals;
     state_.cl.path.lose_position();
+    const bool is_first = state_.cl.refusals++ == 0;
+    if (!is_first && may_come_of_another(done.error())) return {};
     return tl::make_unexpected(error(lines_.line_number(), done.error()));
   }
   if (state_.cl.structure.phase == cl::Structure::Phase::kEnded) return finish(out);

@@ -49,6 +49,8 @@ INSTANTIATE_TEST_SUITE_P(
         Foreign{"Fanuc", "%\nO1234 (PART)\nG90 G54\nG43.4 H1\nG1 X1. Y2. Z3. A10. C20. F500.\n%\n"},
         Foreign{"Fanuc", "%\nO0001\nN10 G0 X0 Y0\nN20 G1 Z-1. F100.\nM30\n%\n"},
         Foreign{"G code", "G21\nG0 X0 Y0 Z5\nG1 Z-1 F100\nX10\nM30\n"},
+        Foreign{"Mastercam NCI",
+                "1050\n8 0 0 0 0 \"X7\"\n1002\n1 2 10. 5. 500\n0\n0 0. 0. 10. -2 0\n"},
         Foreign{"ZIP", std::string("PK\x03\x04 and so on", 14)},
         Foreign{"gzip", std::string("\x1f\x8b\x08\x00\x00", 5)}, Foreign{"PDF", "%PDF-1.7\n"},
         Foreign{"STEP", "ISO-10303-21;\nHEADER;\n"},

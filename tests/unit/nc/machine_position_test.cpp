@@ -11,6 +11,29 @@ namespace {
 
 constexpr double kNear_mm = 1e-6;
 
+/// Rotary axes that are sent to zero of the machine before the first motion, and a cut behind it.
+TEST(NcMachinePosition, OfRotaryAxesIsKnownWhereTheMachineIs) {
+  const auto options = on(shipped("trunnion-bc"));
+  const std::string cut = "G90 G0 X0. Y0. Z5.\nG1 Z0.\n";
+  for (const char* sent : {"G91 G28 B0. C0.\n", "G53 G0 B0. C0.\n"}) {
+    const ReadText read = read_nc(sent + cut, options);
+    ASSERT_EQ(read.error, "") << sent;
+    EXPECT_EQ(to_vector(read.motion().back().tip_mm), Vector3(0, 0, 0)) << sent;
+  }
+  EXPECT_EQ(read_siemens("SUPA G0 B0 C0\nG0 X0 Y0 Z5\nG1 Z0\n", siemens(options)).error, "");
+  EXPECT_EQ(read_klartext("1 L B+0 C+0 R0 FMAX M91\n2 L X+0 Y+0 Z+5 FMAX\n3 L Z+0 F9\n",
+                          klartext(options))
+                .error,
+            "");
+  EXPECT_NE(read_nc("G53 G0 B30. C0.\n" + cut, options).error.find("is not at zero"),
+            std::string::npos);
+  EXPECT_NE(read_nc("G91 G28 B0.\n" + cut).error.find("where rotary axis B stands is not known"),
+            std::string::npos);
+  EXPECT_NE(read_nc("G91 G30 B0.\n" + cut, options).error.find("axis B stands is not known"),
+            std::string::npos)
+      << "the file has no such position";
+}
+
 TEST(SiemensMachinePosition, IsFlaggedWhereTheControlMayAddTheToolsLength) {
   const auto options = siemens(on(shipped("trunnion-bc")));
   const std::string supa = "G0 X0 Y0 Z50\nSUPA G0 Z0\n";

@@ -19,6 +19,29 @@ void expect_refused(const Case& c) {
   EXPECT_NE(read.error.find(c.says), std::string::npos) << c.line << ": " << read.error;
 }
 
+/// How many lines of a program are refused.
+std::size_t refusals_of(const std::string& text, const ClReaderOptions& options) {
+  cl::ClReader reader(std::string_view(text), "part.nc", options);
+  std::size_t count = 0;
+  while (true) {
+    const auto block = reader.next();
+    if (block && !*block) return count;
+    if (block) continue;
+    ++count;
+    if (!reader.go_on()) return count;
+  }
+}
+
+TEST(NcRefusal, OfALineHidesWhatOthersLackByIt) {
+  const auto fanuc = without_machine();
+  EXPECT_EQ(refusals_of("G90 G21\nG0 X[1+1] Y0.\nZ10.\nG1 Z0. F100.\nM30\n", fanuc), 1U)
+      << "the G0 stood in the refused line";
+  EXPECT_EQ(refusals_of("G90 G21\nG0 X0. Y0. Z9.\nG1 X[2] F100.\nX3.\nX4.\nM30\n", fanuc), 1U)
+      << "so did F";
+  EXPECT_EQ(refusals_of("G90 G21\nZ10.\nM30\n", fanuc), 1U) << "nothing hides it";
+  EXPECT_EQ(refusals_of("G90 G21\nG0 X[1] Y0.\nG41 X1.\nM30\n", fanuc), 2U);
+}
+
 TEST(NcRefusal, NamesWhatOnlyAControlCanRun) {
   for (const Case& c : std::vector<Case>{{"#1=2", "a variable (#)"},
                                          {"X[#1]", "an expression"},

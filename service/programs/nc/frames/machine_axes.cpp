@@ -139,6 +139,17 @@ Expected<double, cl::Refusal> MachineAxes::retract_travel(const ToolPose& from,
   return std::max(travel, 0.0);
 }
 
+double MachineAxes::joint_at(const Target& target, int i) const {
+  if (target.value) return words_->axis(i, *target.value);
+  return target.position != nullptr ? (*target.position)[static_cast<std::size_t>(i)]
+                                    : model_.joints[i].home;
+}
+
+std::optional<double> MachineAxes::word_at(const Target& target) const {
+  const int i = words_ ? words_->find(target.address) : -1;
+  return i >= 0 ? std::optional(words_->value(i, joint_at(target, i))) : std::nullopt;
+}
+
 Expected<MachineAxes::Reached, cl::Refusal> MachineAxes::move(
     const ToolPose& from, const std::vector<RotaryAt>& rotary, std::optional<std::uint32_t> tool,
     const std::vector<Target>& targets) const {
@@ -152,10 +163,7 @@ Expected<MachineAxes::Reached, cl::Refusal> MachineAxes::move(
       return refuse("machine " + model_.name + " has no axis " + std::string(target.address),
                     kRightMachine);
     }
-    const double named = target.position != nullptr
-                             ? (*target.position)[static_cast<std::size_t>(i)]
-                             : model_.joints[i].home;
-    (*q)[i] = target.value ? words_->axis(i, *target.value) : named;
+    (*q)[i] = joint_at(target, i);
   }
   Reached out;
   out.pose = forward(model_, *length, *q);

@@ -53,6 +53,8 @@ class MachineAxes {
     std::optional<double> value;  ///< mm or deg as the word says it; nothing: home
     const std::vector<double>* position = nullptr;  ///< where its joint goes then; null: home
   };
+  /// What the program's word says once that axis is there; nothing: the machine has none.
+  [[nodiscard]] std::optional<double> word_at(const Target& target) const;
   /// Where the tool comes from `from` when these axes go there, and rotary words with it.
   struct Reached {
     ToolPose pose{Vector3::Zero(), Vector3::UnitZ()};
@@ -72,6 +74,7 @@ class MachineAxes {
  private:
   [[nodiscard]] Expected<double, cl::Refusal> length_mm(std::optional<std::uint32_t> tool) const;
   [[nodiscard]] JointVector joints(const std::vector<RotaryAt>& rotary) const;
+  [[nodiscard]] double joint_at(const Target& target, int i) const;
   [[nodiscard]] std::optional<JointVector> solve_near(const ToolPose& pose, double tool_length_mm,
                                                       const JointVector& near) const;
 

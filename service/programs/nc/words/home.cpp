@@ -19,14 +19,17 @@ bool is_axis_word(const Word& word) {
 
 bool is_linear(const Word& word) { return word.address.front() >= 'X'; }
 
-/// Before the first motion nothing is known of where the tool is, and nothing has to be.
-void move_unseen(State& s, const Line& line) {
+/// Before the first motion nothing is known of where the tool is, and nothing has to be. Rotary
+/// axes stand where they were sent, as far as the machine is known.
+void move_unseen(State& s, const std::vector<MachineAxes::Target>& targets,
+                 const MachineAxes* known) {
   s.position.forget();
-  for (const Word& word : line.words) {
-    if (!is_axis_word(word) || is_linear(word)) continue;
+  for (const MachineAxes::Target& target : targets) {
+    if (target.address.front() >= 'X') continue;
     std::erase_if(s.position.rotary,
-                  [&](const RotaryAt& at) { return at.address == word.address; });
-    s.position.rotary.push_back({std::string(word.address), std::nullopt});
+                  [&](const RotaryAt& at) { return at.address == target.address; });
+    const auto deg = known != nullptr ? known->word_at(target) : target.value;
+    s.position.rotary.push_back({std::string(target.address), deg});
   }
 }
 
@@ -99,17 +102,18 @@ cl::Outcome move_to_machine_position(State& s, const Line& line, MachinePosition
   } else if (s.modes.is_incremental() || s.modes.motion > Motion::kLine) {
     return refuse(std::string(code) + " needs G90, and G0 or G1", "write both before it");
   }
-  if (!s.cl.path.has_moved()) {
-    move_unseen(s, line);
-    return {};
-  }
-  if (!s.axes) {
+  const bool is_unseen = !s.cl.path.has_moved();
+  if (!s.axes && !is_unseen) {
     return refuse(std::string(code) + " moves to a place of the machine, which is not known here",
                   "--machine FILE", "machine");
   }
-  if (position == MachinePosition::kReference) {
-    if (auto done = lead_to_reference(s, line, targets); !done) return done;
+  cl::Outcome led;
+  if (position == MachinePosition::kReference) led = lead_to_reference(s, line, targets);
+  if (is_unseen) {
+    move_unseen(s, targets, s.axes && led ? s.axes.get() : nullptr);
+    return {};
   }
+  if (!led) return led;
   if (s.cl.path.position() == cl::BlockPath::Position::kLost) {
     s.position.forget();
     return {};

@@ -151,8 +151,18 @@ cl::Outcome check_tip(const State& s, const Target& to) {
         "says where they stand",
         "write the words of all rotary axes before it", "no tip");
   }
+  const auto lost = std::find_if(to.position.rotary.begin(), to.position.rotary.end(),
+                                 [](const RotaryAt& at) { return !at.deg; });
+  if (lost != to.position.rotary.end()) {
+    return refuse("a cut without tool-centre control, and where rotary axis " + lost->address +
+                      " stands is not known here",
+                  "--machine FILE, which says where it was sent, or a word for it", "no tip");
+  }
+  const bool is_fanuc = s.modes.language == Language::kFanuc;
   return refuse("a cut without tool-centre control while a rotary axis is not at zero",
-                "output G43.4 or G43.5, under which X Y Z are those of the tool tip", "no tip");
+                is_fanuc ? "output G43.4 or G43.5, under which X Y Z are those of the tool tip"
+                         : "switch it on (TRAORI, FUNCTION TCPM): X Y Z are those of the tip then",
+                "no tip");
 }
 
 cl::Outcome move_plainly(State& s, const Line& line, const Target& to) {
@@ -202,7 +212,7 @@ Vector3 in_w(const State& s, const Vector3& written) {
 
 cl::Outcome move(State& s, const Line& line) {
   if (s.modes.motion == Motion::kNone) {
-    return refuse("a point, but no G0, G1, G2 or G3 before it", "write G0 or G1 with it");
+    return refuse("a point, but no G0, G1, G2 or G3 before it", "write G0 or G1 with it", "no G0");
   }
   const bool is_arc =
       s.modes.motion == Motion::kClockwise || s.modes.motion == Motion::kCounterClockwise;
