@@ -14,6 +14,7 @@
 #include "service/cli/options/machine_options.hpp"
 #include "service/programs/cl/cl_reader.hpp"
 #include "service/programs/post/post.hpp"
+#include "service/programs/post/tip_frame.hpp"
 #include "service/text/whole_file.hpp"
 
 namespace meridian::cli::post_command {
@@ -86,7 +87,9 @@ int run(Options options) {
     std::cerr << options.file << ": warning: " << program->feeds_limited
               << " feeds above the machine's highest were limited to it\n";
   }
-  if (!program->is_spindle_along_z) {
+  const bool has_tip_words = !post::is_robot_language(options.post.dialect) &&
+                             options.post.dialect != post::Dialect::kJoints;
+  if (has_tip_words && !post::is_spindle_along_z(model)) {
     std::cerr << options.machine.machine
               << ": warning: with its rotary joints at zero the spindle does not stand along +Z; "
                  "the program is right only on a control that counts so\n";
@@ -121,8 +124,7 @@ void add(CLI::App& app, int& exit_code) {
       "post",
       "Write the NC program of a CL file. Poles and ways between blocks as the service has them "
       "from rest to rest; begins on the branch and winding that carry farthest; what cannot be "
-      "expressed is "
-      "refused with its line, and nothing is written then (docs/postprocessor.md)");
+      "expressed is refused with its line, and nothing is written then (docs/postprocessor.md)");
   add_cl_file(*command, options->file);
   add_machine_options(*command, options->machine, true);
   command->add_option("-o,--output", options->output, "Write to this file; else standard output");

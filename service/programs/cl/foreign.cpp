@@ -194,8 +194,8 @@ bool is_nci(std::string_view text) {
   if (!is_head || code.find_first_not_of("0123456789") != std::string_view::npos) return false;
   const std::string_view rest = text.substr(std::min(first.size() + 1, text.size()));
   const std::string_view second = rest.substr(0, rest.find('\n'));
-  return second.size() > 2 && second.find(' ') != std::string_view::npos &&
-         second.find_first_not_of("+-.0123456789 ") >= std::min(second.size(), second.find('"'));
+  const std::string_view numbers = second.substr(0, second.find('"'));  // a text may follow
+  return has(numbers, " ") && numbers.find_first_not_of("+-.0123456789 ") == std::string_view::npos;
 }
 
 constexpr std::string_view kHeidenhain = "a Heidenhain NC program (BEGIN PGM)";

@@ -87,6 +87,8 @@ void note_digits(State& s, const Line& line, const Word& word);
 [[nodiscard]] bool is_relative(const State& s, const Word& word);
 
 // rotary.cpp
+/// The same place of an axis that turns without end, from 0 up to 360 deg.
+[[nodiscard]] double within_turn(double deg);
 /// The rotary words of a line.
 [[nodiscard]] cl::Outcome take_rotary(State& s, const Line& line, Target& to);
 

@@ -14,7 +14,6 @@ void BlocksAhead::fill() {
     if (!block) error_ = block.error();
     is_whole_ = !block || !*block;
     if (is_whole_) return;
-    (*block)->sequence = ++read_;
     blocks_.push_back(**block);
   }
 }

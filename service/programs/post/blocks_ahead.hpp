@@ -8,6 +8,7 @@
 
 #include "meridian/expected.hpp"
 #include "meridian/path/cl_block.hpp"
+#include "meridian/planner/smooth_planner.hpp"
 #include "service/programs/cl/cl_reader.hpp"
 
 namespace meridian::post {
@@ -16,13 +17,12 @@ namespace meridian::post {
 /// before it begins. Context: I/O.
 class BlocksAhead {
  public:
-  /// So many, as in SmoothPlanner.
-  static constexpr std::size_t kAhead = 2048;
+  static constexpr std::size_t kAhead = SmoothPlanner::kLookAhead;
 
   explicit BlocksAhead(cl::ClReader& reader) : reader_(reader) {}
 
-  /// The next block, numbered from 1; nothing behind the last one. What is wrong with the file
-  /// comes in its turn, behind the blocks before it.
+  /// The next block; nothing behind the last one. What is wrong with the file comes in its turn,
+  /// behind the blocks before it.
   [[nodiscard]] Expected<std::optional<ClBlock>, cl::ClError> next();
 
   /// From the block that next() gave on, at most kAhead, no farther than the next tool change:
@@ -35,7 +35,6 @@ class BlocksAhead {
   cl::ClReader& reader_;
   std::vector<ClBlock> blocks_;
   std::size_t at_ = 0;  ///< behind the block that next() gave
-  std::uint64_t read_ = 0;
   std::optional<cl::ClError> error_;
   bool is_whole_ = false;
 };

@@ -40,9 +40,8 @@ namespace {
   if (!is_refused || !is_rotary || redundant_joint(model) < 0) return {};
   return reject.joint == redundant_joint(model)
              ? "; [rewind] policy = \"retract\" in the machine file turns it back off the part"
-             : "; [rewind] policy = \"retract\" in the machine file may go on to the other branch "
-               "off "
-               "the part";
+             : "; [rewind] policy = \"retract\" in the machine file may go to the other branch "
+               "off the part";
 }
 
 [[nodiscard]] std::string reason(const BlockReject& reject, const MachineModel& model) {

@@ -93,8 +93,7 @@ class Post {
   /// `ahead`: the block and those that follow.
   [[nodiscard]] Refusal take(const ClBlock& block, std::span<const ClBlock> ahead) {
     program_->at_line(block.line);
-    ahead_ = ahead;
-    if (Refusal refusal = write(block)) return refusal;
+    if (Refusal refusal = write(block, ahead)) return refusal;
     const std::string why = program_->refusal();
     if (why.empty()) return {};
     return PostError{block.line, why};
@@ -107,11 +106,11 @@ class Post {
   }
 
  private:
-  [[nodiscard]] Refusal write(const ClBlock& block) {
+  [[nodiscard]] Refusal write(const ClBlock& block, std::span<const ClBlock> ahead) {
     switch (block.kind) {
       case BlockKind::kCut:
       case BlockKind::kRapid:
-        return take_motion(block);
+        return take_motion(block, ahead);
       case BlockKind::kDwell:
         if (!(block.value >= 0 && block.value <= kMaxDwell_s)) {
           return PostError{block.line, "a dwell of " + fixed(block.value, 3) + " s"};
@@ -139,10 +138,10 @@ class Post {
     is_retracted_ = true;
   }
 
-  [[nodiscard]] Refusal take_motion(const ClBlock& block) {
+  [[nodiscard]] Refusal take_motion(const ClBlock& block, std::span<const ClBlock> ahead) {
     ++motion_blocks_;
     const JointVector before = passed_.joints();
-    auto pieces = passed_.plan(block, ahead_);
+    auto pieces = passed_.plan(block, ahead);
     if (!pieces) return pieces.error();
     if (block.kind == BlockKind::kCut && block.feed_meaning == FeedMeaning::kTip &&
         model_.max_feed_mm_per_s > 0 && block.feed > model_.max_feed_mm_per_s) {
@@ -252,7 +251,6 @@ class Post {
   PlannedPath passed_;
   PieceWriter writer_;
   std::string name_;
-  std::span<const ClBlock> ahead_;
   bool needs_start_ = true, is_retracted_ = false, is_ended_ = false;
   std::uint64_t motion_blocks_ = 0, feeds_limited_ = 0;
 };
@@ -266,7 +264,6 @@ Expected<NcProgram, PostError> write_nc(cl::ClReader& reader, const std::string&
   if (!words) return tl::make_unexpected(words.error());
   ProgramParts parts{model, *words, options, std::filesystem::path(name).filename().string(),
                      0,     {}};
-  bool counts_along_z = true;
   if (is_robot_language(options.dialect)) {
     if (auto refusal = refuse_robot(parts)) return tl::make_unexpected(*refusal);
   } else if (options.dialect == Dialect::kJoints) {
@@ -283,7 +280,6 @@ Expected<NcProgram, PostError> write_nc(cl::ClReader& reader, const std::string&
     const auto zero = find_program_zero(model, *words);
     if (!zero) return tl::make_unexpected(zero.error());
     parts.zero = *zero;
-    counts_along_z = is_spindle_along_z(model);
   }
   Post post(tools, parts);
   post.begin();
@@ -300,9 +296,7 @@ Expected<NcProgram, PostError> write_nc(cl::ClReader& reader, const std::string&
       return tl::make_unexpected(*refusal);
   }
   if (!post.is_ended()) return tl::make_unexpected(PostError{0, "the program has no end"});
-  NcProgram out = post.result();
-  out.is_spindle_along_z = counts_along_z;
-  return out;
+  return post.result();
 }
 
 }  // namespace meridian::post

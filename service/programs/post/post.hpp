@@ -18,7 +18,6 @@ struct NcProgram {
   std::uint64_t blocks = 0;         ///< lines of the program
   std::uint64_t motion_blocks = 0;  ///< of the CL file
   std::uint64_t feeds_limited = 0;  ///< CL blocks above the machine's highest feed
-  bool is_spindle_along_z = true;   ///< of tool-centre words: where their rotary axes are at zero
 };
 
 /// Writes the NC program of the CL file behind `reader` for `model`, or says why there is none:

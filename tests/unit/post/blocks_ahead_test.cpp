@@ -26,9 +26,9 @@ TEST(BlocksAhead, GiveEveryBlockInItsTurnWithThoseThatFollow) {
   EXPECT_TRUE(blocks.ahead().empty());
   std::uint64_t count = 0;
   for (auto block = blocks.next(); block && *block; block = blocks.next()) {
-    ++count;
     ASSERT_EQ((*block)->sequence, count);
-    ASSERT_EQ(blocks.ahead().front().sequence, count);
+    ++count;
+    ASSERT_EQ(blocks.ahead().front().sequence, (*block)->sequence);
     ASSERT_EQ(blocks.ahead().size(),
               std::min<std::uint64_t>(post::BlocksAhead::kAhead, kCount + 2 - count));
   }

@@ -156,7 +156,7 @@ bool take_parameter(std::string_view& text, const Variables& variables, int& par
   return read.has_value();
 }
 
-/// M8 beside CYCL CALL; M13 and M14 are two in one. False: it is none that may stand there.
+/// M8 beside CYCL CALL. False: it is none that may stand there.
 bool take_action(Line& actions, std::string_view written) {
   constexpr std::array<double, 8> kActions = {3, 4, 5, 7, 8, 9, 13, 14};
   double code = 0;
@@ -164,10 +164,12 @@ bool take_action(Line& actions, std::string_view written) {
                        std::find(kActions.begin(), kActions.end(), code) != kActions.end();
   if (!is_code) return false;
   Word word;
-  word.number = code < 10 ? code : code - 10;
-  move_word(actions, word, "M");
-  word.number = 8;
-  if (code > 10) move_word(actions, word, "M");
+  word.number = code;
+  if (code == 13 || code == 14) {
+    move_start_with_coolant(actions, word);
+  } else {
+    move_word(actions, word, "M");
+  }
   return true;
 }
 

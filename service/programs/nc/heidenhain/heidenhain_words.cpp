@@ -38,7 +38,7 @@ bool is_run_here(std::string_view address) {
 /// M94: rotary positions are shown, and count, within a turn from here on.
 void reduce_rotary(State& s) {
   for (RotaryAt& at : s.position.rotary) {
-    if (at.deg) at.deg = *at.deg - 360 * std::floor(*at.deg / 360);
+    if (at.deg) at.deg = within_turn(*at.deg);
   }
 }
 
@@ -54,6 +54,14 @@ void move_word(Line& to, const Word& word, std::string_view address) {
   Word copy = word;
   copy.address = address;
   to.words.push_back(copy);
+}
+
+void move_start_with_coolant(Line& to, const Word& word) {
+  Word action = word;
+  action.number = word.number == 13 ? 3 : 4;
+  move_word(to, action, "M");
+  action.number = 8;
+  move_word(to, action, "M");
 }
 
 cl::Outcome switch_on(State& s, const Line& line, Orientation::Between between) {
@@ -134,11 +142,7 @@ cl::Outcome translate(State& s, const Line& line, Translated& out) {
       return refuse("M" + std::string(word.digits) + " is not run here", kMovesByCam,
                     "M" + std::string(word.digits));
     } else if (code == 13 || code == 14) {
-      Word start = word;
-      start.number = code == 13 ? 3 : 4;
-      move_word(iso, start, "M");
-      start.number = 8;
-      move_word(iso, start, "M");
+      move_start_with_coolant(iso, word);
     } else if (word.is('R') && !is_radius_arc) {
       if (word.number != 0) return refuse("R beside a straight line", kMovesByCam);
     } else if (word.address == "NX" || word.address == "NY" || word.address == "NZ" ||

@@ -20,6 +20,8 @@ struct Translated {
 
 /// A word under another address.
 void move_word(Line& to, const Word& word, std::string_view address);
+/// M13 and M14: M3 or M4, and M8.
+void move_start_with_coolant(Line& to, const Word& word);
 
 /// Under AXIS SPAT: A, B and C of a line become the tool axis, as TX, TY and TZ give it.
 [[nodiscard]] cl::Outcome take_angles_in_space(State& s, Line& iso);

@@ -20,8 +20,6 @@ void set_rotary(ToolPosition& position, const RotaryAt& end) {
   (at != position.rotary.end() ? *at : position.rotary.emplace_back()) = end;
 }
 
-double within_turn(double deg) { return deg - kTurn_deg * std::floor(deg / kTurn_deg); }
-
 /// Where the axis stands; nothing: that is not known.
 const RotaryAt* known(const ToolPosition& position, std::string_view address) {
   for (const RotaryAt& at : position.rotary) {
@@ -74,6 +72,8 @@ void warn_of_roll_over(State& s, const Line& line, const Word& word, double by_d
 }
 
 }  // namespace
+
+double within_turn(double deg) { return deg - kTurn_deg * std::floor(deg / kTurn_deg); }
 
 cl::Outcome take_rotary(State& s, const Line& line, Target& to) {
   bool has_any = false;

@@ -113,14 +113,14 @@ TEST(PoleStretches, AreDecidedAfreshWhateverWasThereBefore) {
   again.out.pass.at_end = PoleJoin::kRest;
   again.out.pass.seen_end = 7;
   again.out.pass.rate = 3;
-  again.out.pass.is_on_pole = true;
+  again.out.pass.exact = ExactPath::kMeetsPole;
   ASSERT_EQ(fresh.ask(), Answer::kFound);
   ASSERT_EQ(again.ask(), Answer::kFound);
   EXPECT_EQ(again.out.pass.at_begin, PoleJoin::kExact);
   EXPECT_EQ(again.out.pass.at_end, PoleJoin::kExact);
   EXPECT_EQ(again.out.pass.seen_end, fresh.out.pass.seen_end);
   EXPECT_EQ(again.out.pass.rate, 0);
-  EXPECT_FALSE(again.out.pass.is_on_pole);
+  EXPECT_EQ(again.out.pass.exact, ExactPath::kLeadsOn);
   EXPECT_EQ(again.out.pass.end, fresh.out.pass.end);
 }
 

@@ -48,6 +48,14 @@ void RollingFeed::choose_bar(Tangent tangent) noexcept {
   for (int k = 0; k < cells; ++k) bar_middles_[k] = 0.5 * (bar_knots_[k] + bar_knots_[k + 1]);
 }
 
+void RollingFeed::take_old_plan(int knots) noexcept {
+  const auto skipped = new_.first - old_.first;
+  for (int k = 0; k < knots; ++k) {
+    bar_knots_[k] = old_.b[k + skipped];
+    bar_slopes_[k] = old_.slope[k + skipped];
+  }
+}
+
 /// Up to where the old plan turns to its rest, which is no guide: there it falls behind the share
 /// of the bound that it has before.
 void RollingFeed::follow_old_plan() noexcept {
@@ -57,20 +65,13 @@ void RollingFeed::follow_old_plan() noexcept {
   for (int k = 0; k <= last / 2; ++k) share += old_.b[k + skipped] / bar_knots_[k];
   share *= kOldShare / (last / 2 + 1);
   while (last >= 0 && !(old_.b[last + skipped] > share * bar_knots_[last])) --last;
-  for (int k = 0; k <= last; ++k) {
-    bar_knots_[k] = old_.b[k + skipped];
-    bar_slopes_[k] = old_.slope[k + skipped];
-  }
+  take_old_plan(last + 1);
 }
 
 /// Slow about the old rest, but no more is asked of the jerk there than the old plan has shown.
 void RollingFeed::follow_tail() noexcept {
   const int cells = new_.cells(), rest = static_cast<int>(old_.end - new_.first);
-  const auto skipped = new_.first - old_.first;
-  for (int k = 0; k < rest; ++k) {
-    bar_knots_[k] = old_.b[k + skipped];
-    bar_slopes_[k] = old_.slope[k + skipped];
-  }
+  take_old_plan(rest);
   const FeedCell& last = grid_[old_.end - 1];
   double u = last.h;
   for (int k = rest; k <= cells; ++k) {

@@ -149,6 +149,7 @@ class RollingFeed {
   [[nodiscard]] double start_b(std::int64_t first, std::int64_t end) noexcept;
   [[nodiscard]] double stop_b(std::int64_t first, std::int64_t end) const noexcept;
   void choose_bar(Tangent tangent) noexcept;
+  void take_old_plan(int knots) noexcept;
   void follow_old_plan() noexcept;
   void follow_tail() noexcept;
   void lower_beside_rests(double largest) noexcept;

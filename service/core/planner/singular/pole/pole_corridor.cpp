@@ -141,25 +141,27 @@ std::span<const PoleZone> PoleCorridor::find_string(PoleStretch& stretch) noexce
   PolePass& pass = stretch.pass;
   auto pieces = string_.find(task, pass);
   if (!pieces.empty()) return pieces;
-  const bool is_rest_on_pole = probes_.distance_at(pass.end) < kPoleDeviation_rad;
-  pass.needs_string = pass.at_end == PoleJoin::kRest && is_rest_on_pole;
+  const bool is_rest_on_pole =
+      pass.at_end == PoleJoin::kRest && probes_.distance_at(pass.end) < kPoleDeviation_rad;
   const PoleStretch whole = stretch;
+  if (is_rest_on_pole && pass.exact == ExactPath::kLeadsOn) pass.exact = ExactPath::kEndsOnPole;
+  const bool ends_on_pole = pass.exact == ExactPath::kEndsOnPole;
   const auto try_shorter = [&](double reach_mm) {
     if (!stretches_.shorten(stretch, reach_mm)) return;
     lead_to(pass);
     pieces = string_.find(task, pass);
   };
-  double reach = kPoleReach_mm;
   const auto is_found = [&] {
-    return !pieces.empty() ||
-           (!pass.needs_string && (string_.is_exact_best() || may_be_exact(pass)));
+    const bool is_exact = !ends_on_pole && (string_.is_exact_best() || may_be_exact(pass));
+    return !pieces.empty() || is_exact;
   };
+  double reach = kPoleReach_mm;
   for (int n = 0; n < kShorter && !is_found(); ++n) {
     reach *= kShorterShare;
     try_shorter(reach);
   }
-  while (pieces.empty() && pass.needs_string && stretches_.narrow_onto_end(stretch)) try_shorter(0);
-  if (pieces.empty() && pass.needs_string) stretch = whole;
+  while (!is_found() && ends_on_pole && stretches_.narrow_onto_end(stretch)) try_shorter(0);
+  if (pieces.empty() && ends_on_pole) stretch = whole;
   return pieces;
 }
 
@@ -167,7 +169,7 @@ void PoleCorridor::settle(PoleStretch& stretch) noexcept {
   PolePass& pass = stretch.pass;
   lead_to(pass);
   pass.rate = course_.rate;
-  pass.is_on_pole = is_on_pole(stretch);
+  pass.exact = is_on_pole(stretch) ? ExactPath::kMeetsPole : ExactPath::kLeadsOn;
   const auto waiting = static_cast<std::size_t>(pending_.end_index() - pending_.begin_index());
   bool is_exact_best = false;
   if (stretch.has_room && waiting + FreeSpline::kPieces <= kPending) {
@@ -187,7 +189,7 @@ void PoleCorridor::settle(PoleStretch& stretch) noexcept {
 
 /// Whether the exact path leads along the stretch from where the redundant joint is at its begin.
 bool PoleCorridor::may_be_exact(const PolePass& pass) const noexcept {
-  if (pass.is_on_pole || pass.at_begin == PoleJoin::kHeld) return false;
+  if (pass.exact == ExactPath::kMeetsPole || pass.at_begin == PoleJoin::kHeld) return false;
   return pass.at_begin == PoleJoin::kExact || probes_.distance_at(pass.begin) >= tolerance_rad_;
 }
 

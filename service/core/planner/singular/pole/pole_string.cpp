@@ -102,7 +102,7 @@ bool PoleString::leads_on(const PoleWalls::Course& course, const Ahead& ahead) c
 }
 
 bool PoleString::has_exact(const Ahead& ahead) const noexcept {
-  if (pass_->is_on_pole || pass_->needs_string) return false;
+  if (pass_->exact != ExactPath::kLeadsOn) return false;
   if (pass_->at_begin == PoleJoin::kHeld || pass_->at_end == PoleJoin::kHeld) return false;
   if (!ahead.keeps_travel) return true;
   const RouteAfter route = follow_after(*task_, *pass_, pass_->begin, pass_->joints, pass_->branch);

@@ -41,17 +41,23 @@ enum class PoleJoin : std::uint8_t {
   kRest    ///< the machine rests there: by any slope; at the end anywhere inside the tolerance
 };
 
+/// What the exact path along a stretch is worth.
+enum class ExactPath : std::uint8_t {
+  kLeadsOn,     ///< it is taken where it is the quickest
+  kEndsOnPole,  ///< any string is the better: it leaves the redundant joint no direction at its end
+  kMeetsPole    ///< it has no azimuth there: a string, or nothing
+};
+
 /// A stretch of path close to the pole.
 struct PolePass {
   double begin = 0, end = 0;  ///< u
   PoleJoin at_begin = PoleJoin::kExact, at_end = PoleJoin::kExact;
-  bool is_on_pole = false;    ///< it meets the pole: the exact path has no azimuth there
-  bool needs_string = false;  ///< the exact path does not count: it ends on the pole
-  int branch = 0;             ///< on the way in
-  JointVector joints{};       ///< at the begin
-  double rate = 0;            ///< of the redundant joint at the begin by u, where that is kHeld
-  double seen_end = 0;        ///< where the stretch ends, as far as it is known: behind a kHeld end
-  double known_end = 0;       ///< how far joints are to keep travel as well
+  ExactPath exact = ExactPath::kLeadsOn;
+  int branch = 0;        ///< on the way in
+  JointVector joints{};  ///< at the begin
+  double rate = 0;       ///< of the redundant joint at the begin by u, where that is kHeld
+  double seen_end = 0;   ///< where the stretch ends, as far as it is known: behind a kHeld end
+  double known_end = 0;  ///< how far joints are to keep travel as well
   /// How far branches and windings at known_end carry; empty: all alike, or it is not known.
   std::span<const RouteAhead> ahead{};
 };
